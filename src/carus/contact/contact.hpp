@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "carus/contact/triangle_grid.hpp"
+#include "carus/mesh/tet_mesh.hpp"
+
+namespace carus::contact {
+
+/// One side of a contact: facets with their own list of vertices, normals and neighbours.
+struct Surface {
+  std::string name;
+  mesh::Triangles triangles;                       ///< node indices, outward oriented
+  std::vector<std::int32_t> nodes;                 ///< sorted unique nodes
+  std::vector<std::array<std::int32_t, 3>> local;  ///< triangles in local vertex indices
+  std::vector<std::int32_t> around_begin, around;  ///< local vertex -> incident triangles (CSR)
+  std::vector<std::uint8_t> on_border;             ///< local vertex lies on an open edge
+  std::vector<Vec3> normal;                        ///< per local vertex, unit, kept up to date by Contact
+  std::vector<Vec3> facet_normal;                  ///< per triangle, twice the area vector
+
+  Surface(std::string name, mesh::Triangles triangles);
+  void update_normals(const std::vector<Vec3>& x);
+};
+
+/// Which surfaces may touch. a == b: self-contact.
+struct Pair {
+  int a, b;
+  double friction;
+};
+
+/// A rigid body with one degree of freedom that some nodes belong to.
+struct HingeBody {
+  Vec3 point, axis;
+  double inverse_inertia;  ///< [1/(kg m^2)]
+};
+
+struct Options {
+  double activation = 1e-4;   ///< [m] gap below which a pair always enters the solve
+  double reach = 0.010;       ///< [m] distance up to which pairs are looked for at a renewal
+  double correction_speed = 1;  ///< [m/s] at most, outward, where penetrated
+  double max_depth = 0.004;   ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
+  double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch itself
+  double sagitta_limit = 1e-3;   ///< [m]
+  int sweeps = 3;
+};
+
+/// Node against facet: v_rel = n.(v_node - sum w_k v_k) >= target.
+struct Constraint {
+  std::int32_t node;
+  std::array<std::int32_t, 3> facet;
+  std::int32_t probe;
+  std::int16_t hinge_node, hinge_facet;  ///< -1: none
+  float friction;
+  std::array<double, 3> w;
+  Vec3 n;
+  double lever_node, lever_facet;  ///< axis.((p - o) x n) of the hinges
+  double mass;                     ///< effective mass [kg]
+  double target;                   ///< least normal speed [m/s]
+  double gap;                      ///< [m] on the smooth gap
+  double impulse;                  ///< [N s], >= 0
+  Vec3 slip;                       ///< tangential impulse [N s]
+};
+
+/// Frictionless or Coulomb contact between moving surfaces by impulses: find gaps, then projected Gauss-Seidel on velocities.
+///
+/// Order of calls in a step: `detect` with the positions at its start, `solve` on the predicted velocities. Deterministic and
+/// independent of the number of threads.
+class Contact {
+ public:
+  Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest, std::vector<Vec3> inverse_mass,
+          std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges, const Options& options);
+
+  /// Finds the active constraints. `max_speed` bounds every nodal speed in this step [m/s].
+  void detect(const std::vector<Vec3>& x, double dt, double max_speed);
+  /// Changes the velocities (and hinge rates) so that no active pair closes faster than its gap allows.
+  void solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate);
+  /// To be told how far any node moved at most in this step [m].
+  void moved(double distance) { travelled_ += distance; }
+
+  [[nodiscard]] const std::vector<Constraint>& constraints() const { return constraints_; }
+  [[nodiscard]] double least_gap() const;  ///< of the active constraints [m]; +inf without any
+  [[nodiscard]] std::int64_t renewals() const { return renewals_; }
+  [[nodiscard]] double seconds_renewing() const { return seconds_renewing_; }
+
+  /// Forgets partners and normals: the next `detect` finds them anew. What follows then depends on positions, velocities and
+  /// warm-start impulses alone, so a checkpoint taken here continues bit for bit.
+  void start_afresh() { travelled_ = 0, renewed_at_ = -1e30; }
+  [[nodiscard]] std::vector<double> save() const;  ///< warm-start impulses, one per probe
+  void load(const double* impulses);
+
+ private:
+  struct Pass {
+    int nodes, facets;  ///< surfaces
+    bool self;
+    float friction;
+    std::int32_t first, last;  ///< probes
+  };
+  /// One node looking at one surface.
+  struct Probe {
+    std::int32_t node, vertex;  ///< global node, local vertex of its own surface
+    std::int32_t triangle = -1;
+    std::int32_t pass;
+    double wake = 0;  ///< sleeps until this much has been travelled
+    double impulse = 0;
+  };
+  struct Foot {
+    Vec3 w;
+    double distance2;
+  };
+
+  void renew(const std::vector<Vec3>& x);
+  void renew_probe(Probe& probe, const std::vector<Vec3>& x) const;
+  void follow(Probe& probe, const std::vector<Vec3>& x) const;
+  bool admissible(const Probe& probe, std::int32_t triangle) const;
+  bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c) const;
+  void finish(Constraint& c, const std::vector<Vec3>& x) const;
+  void apply(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v, std::vector<double>& rate) const;
+
+  std::vector<Surface> surfaces_;
+  std::vector<Pair> pairs_;
+  std::vector<Vec3> rest_, inverse_mass_;
+  std::vector<std::int16_t> hinge_of_node_;
+  std::vector<HingeBody> hinges_;
+  Options options_;
+  std::vector<Pass> passes_;
+  std::vector<Probe> probes_;
+  std::vector<TriangleGrid> grids_;  ///< per surface
+  std::vector<std::vector<Constraint>> chunk_constraints_;
+  std::vector<Constraint> constraints_;
+  double travelled_ = 0, renewed_at_ = -1e30;
+  int steps_since_renewal_ = 0;
+  std::int64_t renewals_ = 0;
+  double seconds_renewing_ = 0;
+};
+
+}  // namespace carus::contact

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "carus/contact/contact.hpp"
+#include "carus/core/parallel.hpp"
+
+namespace carus::contact {
+
+namespace {
+
+constexpr std::size_t probe_chunk = 512;
+constexpr int normals_every = 8;     // steps: normals turn slowly against the step
+constexpr int renew_every = 400;     // steps at most, so that folds find their new partner
+
+Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3& w) {
+  return w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
+}
+
+}  // namespace
+
+Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest,
+                 std::vector<Vec3> inverse_mass, std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges,
+                 const Options& options)
+    : surfaces_(std::move(surfaces)),
+      pairs_(std::move(pairs)),
+      rest_(rest),
+      inverse_mass_(std::move(inverse_mass)),
+      hinge_of_node_(std::move(hinge_of_node)),
+      hinges_(std::move(hinges)),
+      options_(options),
+      grids_(surfaces_.size()) {
+  const auto add = [&](int nodes, int facets, double friction) {
+    const auto first = std::int32_t(probes_.size());
+    for (std::size_t v = 0; v < surfaces_[nodes].nodes.size(); ++v) {
+      Probe p;
+      p.node = surfaces_[nodes].nodes[v], p.vertex = std::int32_t(v), p.pass = std::int32_t(passes_.size());
+      probes_.push_back(p);
+    }
+    passes_.push_back({nodes, facets, nodes == facets, float(friction), first, std::int32_t(probes_.size())});
+  };
+  for (const Pair& p : pairs_) {
+    add(p.a, p.b, p.friction);
+    if (p.a != p.b) add(p.b, p.a, p.friction);
+  }
+  chunk_constraints_.resize((probes_.size() + probe_chunk - 1) / probe_chunk);
+}
+
+bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
+  const Pass& pass = passes_[probe.pass];
+  const Surface& own = surfaces_[pass.nodes];
+  const Surface& other = surfaces_[pass.facets];
+  // Surfaces that touch face each other; a fold's far side and the back of a thin wall do not.
+  if (own.normal[probe.vertex].dot(other.facet_normal[triangle]) > 0) return false;
+  if (!pass.self) return true;
+  const mesh::Triangle& t = other.triangles[triangle];
+  const Vec3 centre = (rest_[t[0]] + rest_[t[1]] + rest_[t[2]]) / 3;
+  return (centre - rest_[probe.node]).squaredNorm() > options_.self_exclusion * options_.self_exclusion;
+}
+
+void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
+  const Pass& pass = passes_[probe.pass];
+  const Surface& other = surfaces_[pass.facets];
+  const Vec3& p = x[probe.node];
+  double best = options_.reach * options_.reach;
+  std::int32_t found = -1;
+  grids_[pass.facets].for_each_near(p, [&](std::int32_t t) {
+    const mesh::Triangle& f = other.triangles[t];
+    if (!admissible(probe, t)) return;
+    const Vec3 w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
+    const Vec3 d = p - interpolate(x, f, w);
+    const double d2 = d.squaredNorm();
+    if (d2 >= best) return;
+    const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
+    if (depth > options_.max_depth) return;
+    best = d2, found = t;
+  });
+  if (found != probe.triangle && found < 0) probe.impulse = 0;
+  probe.triangle = found;
+  // Both sides may move towards each other: the gap closes by at most twice what any node travels.
+  probe.wake = found < 0 ? std::numeric_limits<double>::infinity() : 0;
+}
+
+void Contact::renew(const std::vector<Vec3>& x) {
+  const auto start = std::chrono::steady_clock::now();
+  for (Surface& s : surfaces_) s.update_normals(x);
+  parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
+    grids_[b].build(x, surfaces_[b].triangles, options_.reach);
+  });
+  parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
+    for (std::size_t i = b; i < e; ++i) renew_probe(probes_[i], x);
+  });
+  renewed_at_ = travelled_;
+  steps_since_renewal_ = 0;
+  ++renewals_;
+  seconds_renewing_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Walks over the facets from the last one to the nearest.
+void Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
+  const Surface& other = surfaces_[passes_[probe.pass].facets];
+  const Vec3& p = x[probe.node];
+  const auto squared = [&](std::int32_t t, Vec3& w) {
+    const mesh::Triangle& f = other.triangles[t];
+    w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
+    return (p - interpolate(x, f, w)).squaredNorm();
+  };
+  Vec3 w;
+  double best = squared(probe.triangle, w);
+  for (int hop = 0; hop < 4; ++hop) {
+    if (w.minCoeff() > 0) return;  // inside the facet: nothing nearer among its neighbours
+    const std::int32_t here = probe.triangle;
+    for (int k = 0; k < 3; ++k) {
+      if (w[k] <= 0) continue;  // only round the vertices that carry the foot
+      const auto v = std::size_t(other.local[here][k]);
+      for (std::int32_t q = other.around_begin[v]; q < other.around_begin[v + 1]; ++q) {
+        const std::int32_t t = other.around[std::size_t(q)];
+        if (t == here || !admissible(probe, t)) continue;
+        Vec3 wt;
+        const double d2 = squared(t, wt);
+        if (d2 < best * (1 - 1e-12)) best = d2, probe.triangle = t;
+      }
+    }
+    if (probe.triangle == here) return;
+    best = squared(probe.triangle, w);
+  }
+}
+
+bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c) const {
+  const Pass& pass = passes_[probe.pass];
+  const Surface& other = surfaces_[pass.facets];
+  follow(probe, x);
+  const mesh::Triangle& f = other.triangles[probe.triangle];
+  const auto& v = other.local[probe.triangle];
+  const Vec3 w = mesh::closest_point_weights(x[probe.node], x[f[0]], x[f[1]], x[f[2]]);
+  const Vec3 foot = interpolate(x, f, w);
+  const Vec3 d = x[probe.node] - foot;
+  Vec3 n = w[0] * other.normal[v[0]] + w[1] * other.normal[v[1]] + w[2] * other.normal[v[2]];
+  n.normalize();
+  const double along = d.dot(n);
+  // Beyond an open edge the surface has ended: no contact on its continuation.
+  bool border = true;
+  for (int k = 0; k < 3; ++k) border = border && (w[k] <= 0 || other.on_border[std::size_t(v[k])]);
+  if (border && w.minCoeff() <= 0 && (d - along * n).squaredNorm() > 1e-8 + 0.01 * along * along) {
+    probe.impulse = 0;
+    return false;
+  }
+  // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
+  double sagitta = 0;
+  for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(v[k])]);
+  const double gap = along - std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
+  if (gap > active_below || gap < -options_.max_depth) {
+    probe.impulse = 0;
+    if (gap > active_below) {
+      // Never asleep for longer than it takes both sides to meet at the greatest speed.
+      probe.wake = travelled_ + 0.5 * (std::min(d.norm(), gap) - active_below);
+    }
+    return false;
+  }
+  c.node = probe.node, c.facet = f, c.w = {w[0], w[1], w[2]}, c.n = n, c.gap = gap, c.friction = pass.friction;
+  c.impulse = probe.impulse, c.slip = Vec3::Zero();
+  c.target = gap >= 0 ? -gap / dt : std::min(-gap / dt, options_.correction_speed);
+  finish(c, x);
+  return c.mass > 0;
+}
+
+/// Effective mass 1 / (n.M^-1 n + sum w_k^2 n.M_k^-1 n + hinges).
+void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {
+  const Vec3 n2 = c.n.cwiseProduct(c.n);
+  double inverse = n2.dot(inverse_mass_[c.node]);
+  for (int k = 0; k < 3; ++k) inverse += c.w[k] * c.w[k] * n2.dot(inverse_mass_[c.facet[k]]);
+  const auto lever = [&](std::int16_t h) {
+    return h < 0 ? 0.0 : hinges_[h].axis.dot((x[c.node] - hinges_[h].point).cross(c.n));
+  };
+  c.hinge_node = hinge_of_node_[c.node], c.hinge_facet = hinge_of_node_[c.facet[0]];
+  c.lever_node = lever(c.hinge_node), c.lever_facet = lever(c.hinge_facet);
+  if (c.hinge_node >= 0) inverse += c.lever_node * c.lever_node * hinges_[c.hinge_node].inverse_inertia;
+  if (c.hinge_facet >= 0) inverse += c.lever_facet * c.lever_facet * hinges_[c.hinge_facet].inverse_inertia;
+  c.mass = inverse > 0 ? 1 / inverse : 0;
+}
+
+void Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
+  // A probe that found nothing within reach, or chose its partner, is good until both sides have moved half of the reach left.
+  const double active_below = options_.activation + 2 * dt * max_speed;
+  if (travelled_ - renewed_at_ > 0.5 * (options_.reach - active_below) - 1e-3 || steps_since_renewal_ >= renew_every) {
+    renew(x);
+  } else if (steps_since_renewal_ % normals_every == 0) {
+    for (Surface& s : surfaces_) s.update_normals(x);
+  }
+  ++steps_since_renewal_;
+  parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t chunk) {
+    auto& out = chunk_constraints_[chunk];
+    out.clear();
+    Constraint c;
+    for (std::size_t i = b; i < e; ++i) {
+      Probe& probe = probes_[i];
+      if (probe.triangle < 0 || probe.wake > travelled_) continue;
+      if (constrain(probe, x, dt, active_below, c)) c.probe = std::int32_t(i), out.push_back(c);
+    }
+  });
+  constraints_.clear();
+  for (const auto& part : chunk_constraints_) constraints_.insert(constraints_.end(), part.begin(), part.end());
+}
+
+double Contact::least_gap() const {
+  double gap = std::numeric_limits<double>::infinity();
+  for (const Constraint& c : constraints_) gap = std::min(gap, c.gap);
+  return gap;
+}
+
+}  // namespace carus::contact

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// The element pass for one instruction set. Included by element_kernel_{portable,avx2,avx512}.cpp inside a namespace of their
+// own, so that no inline function of one instruction set can be picked by the linker for another.
+
+using Lanes = material::Float16;
+using Tensor = material::Mat3T<Lanes>;
+
+struct Nodal {
+  Lanes x, y, z;
+};
+
+#ifdef __AVX512F__
+// Four loads of 16 bytes make a register of lanes l, l+4, l+8, l+12; a 4x4 transposition inside the 128-bit quarters then
+// leaves x, y and z in natural order.
+inline Nodal gather(const Float4* x, const std::int32_t* node) {
+  const auto quad = [&](int l) {
+    __m512 r = _mm512_castps128_ps512(_mm_load_ps(x[node[l]].v));
+    r = _mm512_insertf32x4(r, _mm_load_ps(x[node[l + 4]].v), 1);
+    r = _mm512_insertf32x4(r, _mm_load_ps(x[node[l + 8]].v), 2);
+    return _mm512_insertf32x4(r, _mm_load_ps(x[node[l + 12]].v), 3);
+  };
+  const __m512 a = quad(0), b = quad(1), c = quad(2), d = quad(3);
+  const __m512 ab = _mm512_unpacklo_ps(a, b), cd = _mm512_unpacklo_ps(c, d);
+  const __m512 ab_z = _mm512_unpackhi_ps(a, b), cd_z = _mm512_unpackhi_ps(c, d);
+  return {(Lanes)_mm512_shuffle_ps(ab, cd, 0x44), (Lanes)_mm512_shuffle_ps(ab, cd, 0xee),
+          (Lanes)_mm512_shuffle_ps(ab_z, cd_z, 0x44)};
+}
+
+inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
+  const __m512 x = (__m512)g.x, y = (__m512)g.y, z = (__m512)g.z, o = _mm512_setzero_ps();
+  const __m512 xy = _mm512_unpacklo_ps(x, y), zo = _mm512_unpacklo_ps(z, o);
+  const __m512 xy_h = _mm512_unpackhi_ps(x, y), zo_h = _mm512_unpackhi_ps(z, o);
+  const __m512 r[4] = {_mm512_shuffle_ps(xy, zo, 0x44), _mm512_shuffle_ps(xy, zo, 0xee), _mm512_shuffle_ps(xy_h, zo_h, 0x44),
+                       _mm512_shuffle_ps(xy_h, zo_h, 0xee)};
+  const auto add = [&](int lane, __m128 v) {
+    float* p = f[node[lane]].v;
+    _mm_store_ps(p, _mm_add_ps(_mm_load_ps(p), v));
+  };
+  for (int l = 0; l < 4; ++l) {
+    add(l, _mm512_castps512_ps128(r[l]));
+    add(l + 4, _mm512_extractf32x4_ps(r[l], 1));
+    add(l + 8, _mm512_extractf32x4_ps(r[l], 2));
+    add(l + 12, _mm512_extractf32x4_ps(r[l], 3));
+  }
+}
+#else
+inline Nodal gather(const Float4* x, const std::int32_t* node) {
+  alignas(64) float b[3][lanes];
+  for (int l = 0; l < lanes; ++l) {
+    const float* p = x[node[l]].v;
+    b[0][l] = p[0], b[1][l] = p[1], b[2][l] = p[2];
+  }
+  return {*reinterpret_cast<const Lanes*>(b[0]), *reinterpret_cast<const Lanes*>(b[1]), *reinterpret_cast<const Lanes*>(b[2])};
+}
+
+inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
+  for (int l = 0; l < lanes; ++l) {
+    float* p = f[node[l]].v;
+    p[0] += g.x[l], p[1] += g.y[l], p[2] += g.z[l];
+  }
+}
+#endif
+
+inline Lanes load(const float* p) { return *reinterpret_cast<const Lanes*>(p); }
+
+/// F = Ds B with Ds the current edges from node 0.
+inline Tensor deformation_gradient(const Batch& b, const Float4* x) {
+  const Nodal x0 = gather(x, b.node[0]);
+  Lanes F[9] = {};
+  for (int a = 1; a < 4; ++a) {
+    const Nodal xa = gather(x, b.node[a]);
+    const Lanes d[3] = {xa.x - x0.x, xa.y - x0.y, xa.z - x0.z};
+    for (int j = 0; j < 3; ++j) {
+      const Lanes B = load(b.B[3 * (a - 1) + j]);
+      for (int i = 0; i < 3; ++i) F[3 * i + j] += d[i] * B;
+    }
+  }
+  return {F[0], F[1], F[2], F[3], F[4], F[5], F[6], F[7], F[8]};
+}
+
+/// H = -V P B^T: columns are the forces on nodes 1..3, node 0 takes the opposite of their sum.
+inline void add_forces(const Batch& b, const Tensor& P, Float4* f) {
+  const Lanes V = load(b.volume);
+  Nodal sum{Lanes{}, Lanes{}, Lanes{}};
+  for (int a = 1; a < 4; ++a) {
+    const Lanes B0 = load(b.B[3 * (a - 1)]) * V, B1 = load(b.B[3 * (a - 1) + 1]) * V, B2 = load(b.B[3 * (a - 1) + 2]) * V;
+    const Nodal g{-(P.m00 * B0 + P.m01 * B1 + P.m02 * B2), -(P.m10 * B0 + P.m11 * B1 + P.m12 * B2),
+                  -(P.m20 * B0 + P.m21 * B1 + P.m22 * B2)};
+    scatter_add(f, b.node[a], g);
+    sum.x -= g.x, sum.y -= g.y, sum.z -= g.z;
+  }
+  scatter_add(f, b.node[0], sum);
+}
+
+inline Lanes all(float v) { return Lanes{} + v; }
+
+inline Lanes nodal_mean(const float* p, const Batch& b) {
+  Lanes s{};
+  for (int l = 0; l < lanes; ++l) s[l] = 0.25f * (p[b.node[0][l]] + p[b.node[1][l]] + p[b.node[2][l]] + p[b.node[3][l]]);
+  return s;
+}
+
+using Stress = material::Sym3T<Lanes>;
+
+inline Stress load(const float (&rows)[6][lanes]) {
+  return {load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]), load(rows[4]), load(rows[5])};
+}
+inline void store(const Stress& s, float (&rows)[6][lanes]) {
+  const Lanes* from[6] = {&s.xx, &s.yy, &s.zz, &s.yz, &s.xz, &s.xy};
+  for (int k = 0; k < 6; ++k) *reinterpret_cast<Lanes*>(rows[k]) = *from[k];
+}
+
+/// Maxwell branches on the isochoric second Piola-Kirchhoff stress; P holds the instantaneous isochoric stress and is relaxed.
+inline void relax(const Tensor& F, const Tensor& cof, const Lanes& J, const KernelMaterial& m, BatchHistory* history, Tensor& P) {
+  const Stress now = material::second_piola(cof, J, P);
+  Stress S = now;
+  for (int term = 0; term < m.prony_terms; ++term) {
+    Stress h = load(history[term].h);
+    material::relax(m.prony[term], now, load(history[term].s_iso), h, S);
+    store(h, history[term].h);
+    store(now, history[term].s_iso);
+  }
+  P = material::first_piola_of(F, S);
+}
+
+template <bool fibres, bool prony, class Law>
+inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, Float4* f,
+                        const float* pressure, BatchHistory* history) {
+  KernelReport report;
+  Lanes min_J = all(1e30f);
+  for (std::size_t e = 0; e < n; ++e) {
+    const Batch& b = batches[e];
+    const Tensor F = deformation_gradient(b, x);
+    const Lanes J1 = Law::volume_strain(F);
+    const Lanes p = pressure ? nodal_mean(pressure, b) : m.bulk * J1;
+    Tensor P;
+    if constexpr (fibres || prony) {
+      law.first_piola(F, J1, Lanes{}, P);
+      if constexpr (fibres) {
+        Tensor along;
+        const material::Vec3T<Lanes> a{load(b.fibre[0]), load(b.fibre[1]), load(b.fibre[2])};
+        // Fibres measure the true volume, whatever the matrix does.
+        material::Fibre<Lanes>(all(m.k1), all(m.k2), a).first_piola(F, material::FiniteVolume<Lanes>::volume_strain(F), Lanes{}, along);
+        P += along;
+      }
+      const Tensor cof = Law::volume_gradient(F);
+      if constexpr (prony) relax(F, cof, J1 + 1.0f, m, history + e * std::size_t(m.prony_terms), P);
+      P += cof * p;
+    } else {
+      law.first_piola(F, J1, p, P);
+    }
+    add_forces(b, P, f);
+    min_J = J1 < min_J ? J1 : min_J;
+    const auto bad = ~(J1 > all(-1.0f));  // NaN compares false: it is bad too
+    int any = 0;
+    for (int l = 0; l < lanes; ++l) any |= bad[l];
+    if (any) [[unlikely]] {
+      for (int l = 0; l < lanes; ++l) {
+        if (bad[l] && b.volume[l] > 0) ++report.inverted, report.worst_element = b.element[l];
+      }
+    }
+  }
+  for (int l = 0; l < lanes; ++l) report.min_J = std::min(report.min_J, min_J[l] + 1);
+  return report;
+}
+
+template <class Law>
+inline KernelReport choose(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x,
+                           Float4* f, const float* pressure, BatchHistory* history) {
+  if (m.fibres) {
+    return m.prony_terms ? run<true, true>(law, batches, n, m, x, f, pressure, history)
+                         : run<true, false>(law, batches, n, m, x, f, pressure, history);
+  }
+  return m.prony_terms ? run<false, true>(law, batches, n, m, x, f, pressure, history)
+                       : run<false, false>(law, batches, n, m, x, f, pressure, history);
+}
+
+KernelReport forces(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, Float4* f,
+                    const float* pressure, BatchHistory* history) {
+  switch (m.law) {
+    case material::Law::neo_hooke:
+      return choose(material::NeoHooke<Lanes>(all(m.c10)), batches, n, m, x, f, pressure, history);
+    case material::Law::mooney_rivlin:
+      return choose(material::MooneyRivlin<Lanes>(all(m.c10), all(m.c01)), batches, n, m, x, f, pressure, history);
+    case material::Law::hooke_corotated:
+      return choose(material::HookeCorotated<Lanes>(all(m.mu)), batches, n, m, x, f, pressure, history);
+    case material::Law::hooke_small_strain:
+      return choose(material::HookeSmallStrain<Lanes>(all(m.mu)), batches, n, m, x, f, pressure, history);
+  }
+  CARUS_ASSERT(false);
+}
+
+void volumes(const Batch* batches, std::size_t n, const Float4* x, float* current) {
+  for (std::size_t e = 0; e < n; ++e) {
+    const Batch& b = batches[e];
+    const Lanes quarter = 0.25f * load(b.volume) * material::determinant(deformation_gradient(b, x));
+    for (int a = 0; a < 4; ++a) {
+      for (int l = 0; l < lanes; ++l) current[b.node[a][l]] += quarter[l];
+    }
+  }
+}

@@ -1,0 +1,6 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "carus/fem/element_kernel_impl.hpp"
+
+namespace carus::fem::portable {
+#include "carus/fem/element_kernel.inl"
+}  // namespace carus::fem::portable

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "carus/scenario/scenario.hpp"
+#include "carus/solve/explicit.hpp"
+
+namespace carus::results {
+
+/// What a run needs of a solver, whichever it is. Stopping at a time may change the numbers, so a run stops at times that follow from
+/// its scenario alone; from `restore`d states it goes on to the very same bits.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual void advance_to(double time) = 0;  ///< [s of labour]; throws NumericalFailure and keeps the last good state
+  virtual const fem::State& state() const = 0;
+  virtual void restore(const fem::State& state) = 0;
+  virtual solve::Observables observe() const = 0;
+
+  struct Facts {
+    std::int64_t steps = 0;  ///< of the whole labour
+    double labour_per_pseudo = 1;
+    solve::StepReport step{};
+  };
+  virtual Facts facts() const = 0;
+  virtual std::vector<std::pair<std::string, double>> timings() const = 0;
+};
+
+/// The solver that the scenario names. Throws InputError if this build has none of that kind.
+std::unique_ptr<Engine> make_engine(const scenario::Scenario& scenario, const fem::Model& model);
+
+}  // namespace carus::results

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <vector>
+
+#include "carus/fem/model.hpp"
+#include "carus/observe/strain.hpp"
+
+namespace carus::results {
+
+/// frames/frame_NNNN.vtu (VTK XML, appended raw, single precision, zlib) and frames.pvd, which names only frames that are whole.
+///
+///     points     current position [m];  displacement [m], velocity [m/s of labour], contact_force [N]
+///     cells      region, organ (numbers by name in the field data), J, max_stretch
+class Frames {
+ public:
+  /// `times`: of frames that are already there (resume). `labour_per_pseudo`: seconds of labour in one of pseudo-time.
+  Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain, double labour_per_pseudo,
+         std::vector<double> times = {});
+  ~Frames();
+  void write(const fem::State& state, const std::vector<Vec3>& contact_force);
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }  ///< [s of labour]
+
+ private:
+  struct Grid;
+  void write_index() const;
+
+  std::filesystem::path folder_;
+  const fem::Model& model_;
+  const observe::Strain& strain_;
+  double labour_per_pseudo_;
+  std::vector<double> times_;
+  std::unique_ptr<Grid> grid_;
+};
+
+}  // namespace carus::results

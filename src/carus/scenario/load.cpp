@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <initializer_list>
+
+#include "carus/anatomy/sizes.hpp"
+#include "carus/core/error.hpp"
+#include "carus/scenario/bind.hpp"
+#include "carus/scenario/consistency.hpp"
+#include "carus/scenario/raw.hpp"
+#include "carus/scenario/settings.hpp"
+
+namespace carus::scenario {
+
+namespace {
+
+/// Fills the members of a scenario from settings. A path that the schema does not know is a bug.
+class Reader {
+ public:
+  explicit Reader(const Settings& settings) : settings_(settings) {}
+
+  void operator()(const std::string& path, double& x) const { x = get<double>(path); }
+  void operator()(const std::string& path, int& x) const { x = static_cast<int>(get<double>(path)); }
+  void operator()(const std::string& path, bool& x) const { x = get<bool>(path); }
+  void operator()(const std::string& path, std::string& x) const { x = get<std::string>(path); }
+
+  template <class E>
+  void choice(const std::string& path, E& x, std::initializer_list<std::pair<const char*, E>> names) const {
+    for (const auto& [name, value] : names)
+      if (name == get<std::string>(path)) {
+        x = value;
+        return;
+      }
+    CARUS_ASSERT(false);
+  }
+
+  template <class T, class Item>
+  void list(const std::string& path, std::vector<T>& x, const Item& item) const {
+    x.assign(settings_.sizes.at(path), T{});
+    for (std::size_t i = 0; i < x.size(); ++i) item(fmt::format("{}[{}]", path, i), x[i]);
+  }
+
+ private:
+  template <class T>
+  const T& get(const std::string& path) const {
+    const auto it = settings_.values.find(path);
+    CARUS_ASSERT(it != settings_.values.end());
+    return std::get<T>(it->second);
+  }
+
+  const Settings& settings_;
+};
+
+Scenario build(Raw root, const std::filesystem::path& file, const std::vector<std::string>& overrides,
+               Problems problems) {
+  // A file that could not be read says nothing about its keys: its own problems are all there is to tell.
+  if (!problems.empty()) throw InputError(problems);
+  for (const std::string& assignment : overrides) apply_override(root, assignment, problems);
+  Problems warnings;
+  const Settings settings = settle(root, problems, warnings);
+  if (!problems.empty()) throw InputError(problems);
+
+  Scenario s;
+  s.file = file.string();
+  Reader reader(settings);
+  bind(reader, s);
+  if (s.name.empty()) s.name = file.stem().string();
+  s.warnings = std::move(warnings);
+  problems = inconsistencies(s, settings);
+  if (!problems.empty()) throw InputError(problems);
+
+  s.anatomy.mesh = anatomy::mesh_size(name_of(s.resolution));
+  auto& mesh = s.anatomy.mesh;
+  for (double* edge : {&mesh.fetus, &mesh.uterus, &mesh.abdomen_inner, &mesh.abdomen_outer, &mesh.bone})
+    *edge *= s.numerics.mesh_factor;
+  return s;
+}
+
+}  // namespace
+
+Scenario load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Problems problems;
+  Raw root = read_yaml_file(file, problems);
+  return build(std::move(root), file, overrides, std::move(problems));
+}
+
+Scenario parse(const std::string& yaml, const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Problems problems;
+  Raw root = read_yaml(yaml, file, problems);
+  return build(std::move(root), file, overrides, std::move(problems));
+}
+
+const char* name_of(Resolution resolution) {
+  switch (resolution) {
+    case Resolution::coarse:
+      return "coarse";
+    case Resolution::paper:
+      return "paper";
+    case Resolution::fine:
+      return "fine";
+  }
+  CARUS_ASSERT(false);
+}
+
+solve::ExplicitOptions explicit_options(const Scenario& s) {
+  const Numerics& n = s.numerics;
+  solve::ExplicitOptions o;
+  o.labour_duration = n.labour_duration;
+  o.pseudo_duration = n.pseudo_duration * n.pseudo_time_factor;
+  o.time_step = n.time_step;
+  o.safety = n.safety;
+  o.drag = n.drag * n.drag_factor;
+  o.max_node_speed = n.max_node_speed;
+  o.contact_sweeps = s.contact.sweeps;
+  o.contact_search = s.contact.search;
+  o.contact_correction = s.contact.correction_speed;
+  o.threads = n.threads;
+  return o;
+}
+
+}  // namespace carus::scenario
