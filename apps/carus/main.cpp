@@ -1,2 +1,39 @@
 // SPDX-License-Identifier: Apache-2.0
-int main() { return 0; }
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "app.hpp"
+#include "carus/core/error.hpp"
+
+namespace carus::app {
+
+void refuse_without_meshing(const std::string& subcommand) {
+  throw InputError(fmt::format("carus {}: this build has no meshing (CARUS_MESHING=OFF); configure with -DCARUS_MESHING=ON", subcommand));
+}
+
+}  // namespace carus::app
+
+int main(int argc, char** argv) {
+  using namespace carus;
+  CLI::App app("carus: computes a childbirth by finite elements. Not for clinical use.", "carus");
+  app.set_version_flag("--version", fmt::format("carus {} ({})", CARUS_VERSION, CARUS_COMMIT));
+  app.require_subcommand(1);
+  app.footer("Exit status: 0 done, 2 bad input, 3 numerical failure, 4 interrupted (resumable).");
+  int status = app::done;
+  app::add_run(app, status);
+  app::add_check(app, status);
+  app::add_anatomy(app, status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? app::done : app::bad_input;
+  } catch (const InputError& e) {
+    for (const auto& problem : e.problems()) fmt::print(stderr, "error: {}\n", problem);
+    return app::bad_input;
+  } catch (const NumericalFailure& e) {
+    fmt::print(stderr, "numerical failure: {}\n", e.what());
+    return app::numerical_failure;
+  }
+  return status;
+}

@@ -7,7 +7,8 @@
 
 namespace carus::models {
 
-Forces element_forces(const fem::Model& model, std::vector<fem::Block>& blocks, const std::vector<Vec3>& x, fem::ElementForces kernel) {
+Forces element_forces(const fem::Model& model, std::vector<fem::Block>& blocks, const std::vector<Vec3>& x,
+                      fem::ElementForces kernel) {
   Forces out;
   out.at.assign(x.size(), Vec3::Zero());
   for (auto& b : blocks) {
@@ -19,8 +20,8 @@ Forces element_forces(const fem::Model& model, std::vector<fem::Block>& blocks, 
     for (std::size_t r = 0; r < b.runs.size(); ++r) {
       const auto& run = b.runs[r];
       const auto material = solve::kernel_material(model.regions[run.region], 1.0);
-      const auto report = kernel(b.batches.data() + run.begin, run.end - run.begin, material, b.x.data(), b.f.data(), nullptr,
-                                 b.history.data() + b.history_begin[r]);
+      const auto report = kernel(b.batches.data() + run.begin, run.end - run.begin, material, b.x.data(), b.f.data(),
+                                 nullptr, b.history.data() + b.history_begin[r]);
       out.report.min_J = std::min(out.report.min_J, report.min_J);
       out.report.inverted += report.inverted;
       if (report.worst_element >= 0) out.report.worst_element = report.worst_element;

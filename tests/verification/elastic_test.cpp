@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Elastic bodies without contact against closed forms. Static answers come from the explicit solver with drag near twice the
-// lowest angular frequency (dynamic relaxation).
+// Elastic bodies without contact against closed forms. Static answers come from the explicit solver with drag near
+// twice the lowest angular frequency (dynamic relaxation).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,8 @@ TEST(Patch, ShakenMeshRelaxesToTheAffineMap) {
       });
       s.advance_to(0.5);
       const double error = peak_error(s.state().x, [&](std::size_t i) -> Vec3 { return A * m.mesh.nodes[i]; });
-      // Single-precision forces: strains to about 1e-6, so positions to 1e-6 of the side. Nodal averages round volumes too.
+      // Single-precision forces: strains to about 1e-6, so positions to 1e-6 of the side. Nodal averages round volumes
+      // too.
       EXPECT_LT(error, (averaged ? 1e-5 : 3e-6) * side) << law.name << " averaged " << averaged;
     }
   }
@@ -71,17 +72,18 @@ Uniform uniaxial(double stretch, double poisson) {
     for (Vec3& x : st.x) x.z() *= stretch;
   });
   s.advance_to(1);
-  // Lateral stretch b of the closed form: 2 C10/J^(5/3) (b^2 - I1/3) + K (J - 1) = 0, by bisection.
+  // Lateral stretch b of the closed form: 2 C10/J^(5/3) (b^2 - I1/3) + K/2 (J - 1/J) = 0, by bisection.
   const double G = material.shear_modulus(), K = material.bulk_modulus();
   const auto lateral = [&](double b) {
     const double J = b * b * stretch;
-    return G * std::pow(J, -5.0 / 3) * (b * b - stretch * stretch) / 3 + K * (J - 1);
+    return G * std::pow(J, -5.0 / 3) * (b * b - stretch * stretch) / 3 + K / 2 * (J - 1 / J);
   };
   double lo = 0.3, hi = 2;
   for (int i = 0; i < 60; ++i) (lateral(0.5 * (lo + hi)) < 0 ? lo : hi) = 0.5 * (lo + hi);
   const double J = lo * lo * stretch;
   double stress = 0;
-  for (std::size_t e = 0; e < m.mesh.tets.size(); ++e) stress += models::neo_hooke_stress(m, e, s.state().x)(2, 2) / double(m.mesh.tets.size());
+  for (std::size_t e = 0; e < m.mesh.tets.size(); ++e)
+    stress += models::neo_hooke_stress(m, e, s.state().x)(2, 2) / double(m.mesh.tets.size());
   return {stress, 2 * G * std::pow(J, -5.0 / 3) * (stretch * stretch - lo * lo) / 3 + K * (J - 1)};
 }
 
@@ -89,18 +91,20 @@ TEST(Uniaxial, FollowsTheClosedForm) {
   for (const double stretch : {0.6, 1.001, 1.5}) {
     for (const double poisson : {0.3, 0.49}) {
       const auto u = uniaxial(stretch, poisson);
-      // A uniform state has no discretisation error; single precision and what is left of the relaxation: 0.1 %. At a strain
-      // of 0.1 % the strains themselves carry 1e-6, times K/G = 50.
-      EXPECT_NEAR(u.stress, u.expected, (stretch == 1.001 ? 2e-2 : 1e-3) * std::abs(u.expected)) << stretch << ' ' << poisson;
+      // A uniform state has no discretisation error; single precision and what is left of the relaxation: 0.1 %. At a
+      // strain of 0.1 % the strains themselves carry 1e-6, times K/G = 50.
+      EXPECT_NEAR(u.stress, u.expected, (stretch == 1.001 ? 2e-2 : 1e-3) * std::abs(u.expected))
+          << stretch << ' ' << poisson;
     }
   }
 }
 
-/// Simple shear, all faces imposed: the reactions are those of the closed form tau = G gamma, and the Poynting effect comes out
-/// as sigma_xx - sigma_yy = G gamma^2 (neo-Hooke, J = 1).
+/// Simple shear, all faces imposed: the reactions are those of the closed form tau = G gamma, and the Poynting effect
+/// comes out as sigma_xx - sigma_yy = G gamma^2 (neo-Hooke, J = 1).
 TEST(SimpleShear, StressAndReactionsFollowTheClosedForm) {
   constexpr double gamma = 0.4;
-  auto m = models::of(shapes::box(Vec3::Zero(), Vec3::Constant(side), 4, 4, 4), {models::soft(material::Law::neo_hooke, shear, 0.45)});
+  auto m = models::of(shapes::box(Vec3::Zero(), Vec3::Constant(side), 4, 4, 4),
+                      {models::soft(material::Law::neo_hooke, shear, 0.45)});
   Mat3 A = Mat3::Identity();
   A(0, 1) = gamma;
   std::vector<Vec3> x;
@@ -116,7 +120,7 @@ TEST(SimpleShear, StressAndReactionsFollowTheClosedForm) {
     if (on(m.mesh.nodes[i].y(), side)) top -= f.at[i];
   }
   const double area = side * side;
-  EXPECT_NEAR(top.x() / area, s_xy, 1e-4 * s_xy);            // single precision
+  EXPECT_NEAR(top.x() / area, s_xy, 1e-4 * s_xy);  // single precision
   EXPECT_NEAR(top.y() / area, s_yy, 1e-4 * s_xy);
 }
 
@@ -124,7 +128,8 @@ TEST(SimpleShear, StressAndReactionsFollowTheClosedForm) {
 TEST(Wave, LongitudinalSpeed) {
   constexpr double length = 0.4;
   constexpr int cells = 100;
-  auto m = models::of(shapes::box(Vec3::Zero(), {0.008, 0.008, length}, 2, 2, cells), {models::soft(material::Law::neo_hooke, shear, 0.3)});
+  auto m = models::of(shapes::box(Vec3::Zero(), {0.008, 0.008, length}, 2, 2, cells),
+                      {models::soft(material::Law::neo_hooke, shear, 0.3)});
   models::block(m, fem::x | fem::y, [](const Vec3&) { return true; });
   models::block(m, fem::z, [](const Vec3& X) { return on(X.z(), length); });
   const double c = models::wave_speed(m.regions[0].material);
@@ -155,8 +160,8 @@ TEST(Wave, LongitudinalSpeed) {
   EXPECT_NEAR(speed, c, 0.01 * c);
 }
 
-/// Thick sphere of incompressible neo-Hooke under inner pressure: p(b_i) = 2 C10 [1/2 x^-4 + 2 x^-1], x = stretch, from outer
-/// to inner radius (Ogden 1984, section 5.3.2: p = G [2/x + 1/(2 x^4)] between the stretches).
+/// Thick sphere of incompressible neo-Hooke under inner pressure: p(b_i) = 2 C10 [1/2 x^-4 + 2 x^-1], x = stretch, from
+/// outer to inner radius (Ogden 1984, section 5.3.2: p = G [2/x + 1/(2 x^4)] between the stretches).
 double sphere_pressure(double inner, double outer, double G, double inner_now) {
   const double grown = inner_now * inner_now * inner_now - inner * inner * inner;
   const auto term = [](double stretch) { return 2 / stretch + 0.5 / std::pow(stretch, 4); };
@@ -190,13 +195,15 @@ TEST(ThickSphere, PressureConverges) {
   double finest[2];
   for (const bool averaged : {false, true}) {
     double error[3];
-    for (int k = 0; k < 3; ++k) error[k] = std::abs(inflated_radius(2 << k, averaged, pressure) - grown) / (grown - inner);
+    for (int k = 0; k < 3; ++k)
+      error[k] = std::abs(inflated_radius(2 << k, averaged, pressure) - grown) / (grown - inner);
     const double order = 0.5 * std::log2(error[0] / error[2]);
-    std::printf("thick sphere, nodal averages %d: errors %.4f %.4f %.4f of the dilatation, order %.2f\n", averaged, error[0], error[1],
-                error[2], order);
+    std::printf("thick sphere, nodal averages %d: errors %.4f %.4f %.4f of the dilatation, order %.2f\n", averaged,
+                error[0], error[1], error[2], order);
     EXPECT_LT(error[1], error[0]);
     EXPECT_LT(error[2], error[1]);
-    // Second order in the energy of linear elements. Plain tets at nu = 0.495 lock: they converge, from far off and slowly.
+    // Second order in the energy of linear elements. Plain tets at nu = 0.495 lock: they converge, from far off and
+    // slowly.
     EXPECT_GT(order, averaged ? 1.7 : 0.6);
     finest[averaged] = error[2];
   }

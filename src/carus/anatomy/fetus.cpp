@@ -11,7 +11,7 @@
 namespace carus::anatomy {
 namespace {
 
-constexpr double neck_radius = 0.026;        // [m]
+constexpr double neck_radius = 0.026;  // [m]
 constexpr double shoulder_half_depth = 0.0475, shoulder_half_height = 0.048;
 constexpr double trunk_half_width = 0.053, trunk_half_depth = 0.050;
 constexpr double head_to_shoulders = 0.046;  // from the head's upper end to the middle of the shoulders [m]
@@ -24,20 +24,30 @@ Mat3 about(const Vec3& axis, double angle) { return Eigen::AngleAxisd(angle, axi
 double Fetus::turn_of(Position p) {
   // OA: occiput at +y; a turn of +90 degrees about z brings it to the mother's left, -x.
   switch (p) {
-    case Position::OA: return 0;
-    case Position::LOA: return pi / 4;
-    case Position::LOT: return pi / 2;
-    case Position::LOP: return 3 * pi / 4;
-    case Position::OP: return pi;
-    case Position::ROP: return -3 * pi / 4;
-    case Position::ROT: return -pi / 2;
-    case Position::ROA: return -pi / 4;
+    case Position::OA:
+      return 0;
+    case Position::LOA:
+      return pi / 4;
+    case Position::LOT:
+      return pi / 2;
+    case Position::LOP:
+      return 3 * pi / 4;
+    case Position::OP:
+      return pi;
+    case Position::ROP:
+      return -3 * pi / 4;
+    case Position::ROT:
+      return -pi / 2;
+    case Position::ROA:
+      return -pi / 4;
   }
   CARUS_ASSERT(false);
 }
 
-Fetus::Fetus(const FetusParameters& p) : p_(p), turn_(about(Vec3::UnitZ(), turn_of(p.position))), centre_(0, 0, p.head_start) {
-  // Flexion brings the occiput (+y) down to the leading end (-z); asynclitism tilts the head about its occipitofrontal axis.
+Fetus::Fetus(const FetusParameters& p)
+    : p_(p), turn_(about(Vec3::UnitZ(), turn_of(p.position))), centre_(0, 0, p.head_start) {
+  // Flexion brings the occiput (+y) down to the leading end (-z); asynclitism tilts the head about its occipitofrontal
+  // axis.
   head_axes_ = about(Vec3::UnitY(), p.asynclitism) * about(Vec3::UnitX(), -p.flexion);
   head_semi_ = Vec3(p.biparietal, p.occipitofrontal, p.suboccipitobregmatic) / 2;
   head_up_ = head_semi_.cwiseProduct(head_axes_.row(2).transpose()).norm();
@@ -45,8 +55,9 @@ Fetus::Fetus(const FetusParameters& p) : p_(p), turn_(about(Vec3::UnitZ(), turn_
   breech_centre_ = p.length - head_up_ - breech_radius_;
   shoulders_ = head_up_ + head_to_shoulders;
   if (breech_centre_ < shoulders_ + 0.02)
-    throw InputError(fmt::format("fetus.length: {:.0f} mm leaves no room for a trunk, at least {:.0f} mm; hint: 300 mm for a head of 116 mm",
-                                 p.length * 1e3, (shoulders_ + 0.02 + head_up_ + breech_radius_) * 1e3));
+    throw InputError(fmt::format(
+        "fetus.length: {:.0f} mm leaves no room for a trunk, at least {:.0f} mm; hint: 300 mm for a head of 116 mm",
+        p.length * 1e3, (shoulders_ + 0.02 + head_up_ + breech_radius_) * 1e3));
   trunk_ = (shoulders_ + breech_centre_) / 2;
   shoulder_semi_ = {p.shoulder_width / 2, shoulder_half_depth, shoulder_half_height};
   trunk_semi_ = {trunk_half_width, trunk_half_depth, (breech_centre_ - shoulders_) / 2 + 0.030};
@@ -85,7 +96,8 @@ std::int32_t Fetus::core(const Vec3& x) const {
   const Vec3 own = to_own(x);
   const double h = head(own), t = trunk(own);
   if (join(own, t, h) > -p_.skin_thickness) return outside;
-  // The skull's base within the neck is the ellipsoid's; in the fillet round it the border stands across the surface, not along it.
+  // The skull's base within the neck is the ellipsoid's; in the fillet round it the border stands across the surface,
+  // not along it.
   return h < -p_.skin_thickness || h < t ? skull : fetal_body;
 }
 

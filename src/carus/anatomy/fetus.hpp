@@ -17,7 +17,7 @@ class Fetus {
   [[nodiscard]] std::int32_t label(const Vec3& x) const;
   [[nodiscard]] std::int32_t core(const Vec3& x) const;  ///< the label without the skin: 0 in it and outside
   [[nodiscard]] Vec3 on_skin(Vec3 x) const;              ///< the point of the outer surface above a point of the core's
-  [[nodiscard]] double distance(const Vec3& x) const;  ///< to the skin's outer surface [m]
+  [[nodiscard]] double distance(const Vec3& x) const;    ///< to the skin's outer surface [m]
   /// The smooth bag that the uterus is generated from: the fetus with its neck filled up.
   [[nodiscard]] double bag(const Vec3& x) const;
 

@@ -29,7 +29,8 @@ Surface surface_of(const Body& body, Label label) {
   return surface_of(body, [=](std::int32_t l) { return l == label; });
 }
 
-/// Distances along a ray from o to the surface, nearest and farthest hit (Moeller and Trumbore 1997); far, -far if none.
+/// Distances along a ray from o to the surface, nearest and farthest hit (Moeller and Trumbore 1997); far, -far if
+/// none.
 std::pair<double, double> hits(const Surface& s, const Vec3& o, const Vec3& dir) {
   double first = far, last = -far;
   for (const auto& t : s.t) {
@@ -45,7 +46,9 @@ std::pair<double, double> hits(const Surface& s, const Vec3& o, const Vec3& dir)
 }
 
 /// Width of a solid along a line through c.
-double diameter(const Surface& s, const Vec3& c, const Vec3& dir) { return hits(s, c, dir).second + hits(s, c, -dir).second; }
+double diameter(const Surface& s, const Vec3& c, const Vec3& dir) {
+  return hits(s, c, dir).second + hits(s, c, -dir).second;
+}
 
 /// Where rays into a solid, started along the segment from a to b, first meet it.
 std::vector<Vec3> midline(const Surface& s, const Vec3& a, const Vec3& b, const Vec3& into) {
@@ -86,8 +89,8 @@ Surface part(const Surface& s, const Vec3& c, double r) {
 
 double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-/// Inner edge of an inferior ramus: where lines across it first meet bone at several depths below the symphysis; a straight line
-/// through them by least squares gives half the pubic arch angle.
+/// Inner edge of an inferior ramus: where lines across it first meet bone at several depths below the symphysis; a
+/// straight line through them by least squares gives half the pubic arch angle.
 double half_arch(const Surface& bone, const Vec3& S, const Vec3& ramus, double side) {
   Vec3 down = ramus - S;
   down.x() = 0;
@@ -99,7 +102,8 @@ double half_arch(const Surface& bone, const Vec3& S, const Vec3& ramus, double s
   for (int i = 0; i <= 12; ++i) {
     const double u = depth * (0.5 + 0.9 * i / 12);
     double x = far;
-    for (int k = -8; k <= 8; ++k) x = std::min(x, hits(bone, S + u * down + 0.0015 * k * front, side * Vec3::UnitX()).first);
+    for (int k = -8; k <= 8; ++k)
+      x = std::min(x, hits(bone, S + u * down + 0.0015 * k * front, side * Vec3::UnitX()).first);
     if (x == far) continue;
     A += Eigen::Vector2d(u, 1) * Eigen::RowVector2d(u, 1);
     b += x * Eigen::Vector2d(u, 1);
@@ -113,7 +117,9 @@ void measure_pelvis(Anatomy& a) {
   const auto upper = surface_of(a.abdomen, sacrum), lower = surface_of(a.abdomen, coccyx);
   const auto& l = a.landmarks;
   auto& m = a.measured;
-  const auto width = [&](const Vec3& middle) { return hits(right, middle, Vec3::UnitX()).first + hits(left, middle, -Vec3::UnitX()).first; };
+  const auto width = [&](const Vec3& middle) {
+    return hits(right, middle, Vec3::UnitX()).first + hits(left, middle, -Vec3::UnitX()).first;
+  };
   // Shortest way between two places, by alternating closest points.
   const auto between = [&](const Surface& s, Vec3 p, const Surface& t, Vec3 q) {
     for (int i = 0; i < 20; ++i) p = closest(s, q), q = closest(t, p);
@@ -123,15 +129,18 @@ void measure_pelvis(Anatomy& a) {
   const auto& P = l.at("promontory");
   const auto& T = l.at("coccyx_tip");
   // Sagittal diameters are taken in the midline: off it the inlet's oval is nearer to itself.
-  const Surface pubis = surface_of(a.abdomen, [](std::int32_t q) { return q == innominate_right || q == innominate_left; });
+  const Surface pubis =
+      surface_of(a.abdomen, [](std::int32_t q) { return q == innominate_right || q == innominate_left; });
   const Surface back = surface_of(a.abdomen, [](std::int32_t q) { return q == sacrum || q == coccyx; });
-  const auto front_line = midline(pubis, Vec3(0, 0, l.at("symphysis_top").z()), Vec3(0, 0, S.z()), Vec3::UnitY());
+  const auto front_line =
+      midline(pubis, Vec3(0, 0, l.at("symphysis_top").z()), Vec3(0, 0, S.z() - 0.003), Vec3::UnitY());
   const auto back_line = midline(back, Vec3(0, 0, P.z() + 0.004), Vec3(0, 0, P.z() - 0.012), -Vec3::UnitY());
   m["obstetric_conjugate"] = least_distance(front_line, back_line);
   m["transverse_inlet"] = 0;
   for (int k = -10; k <= 10; ++k)
     if (const double w = width({0, 0.002 * k, 0}); w < 1) m["transverse_inlet"] = std::max(m["transverse_inlet"], w);
-  m["interspinous"] = between(part(right, l.at("spine_right"), 0.012), l.at("spine_right"), part(left, l.at("spine_left"), 0.012), l.at("spine_left"));
+  m["interspinous"] = between(part(right, l.at("spine_right"), 0.012), l.at("spine_right"),
+                              part(left, l.at("spine_left"), 0.012), l.at("spine_left"));
   m["intertuberous"] = width((l.at("tuber_right") + l.at("tuber_left")) / 2);
   m["sagittal_outlet"] = least_distance(front_line, {closest(back, T)});
   const Vec3 ramus_right = l.at("ramus_right"), ramus_left = l.at("ramus_left");
@@ -140,40 +149,51 @@ void measure_pelvis(Anatomy& a) {
   m["sacral_height"] = (promontory - tip).norm();
   // The coccyx' direction from its anterior face between its ends, which meshing rounds.
   const Vec3 along = T - l.at("sacrum_tip"), into = Vec3(0, along.z(), -along.y()).normalized();
-  const auto face = midline(lower, l.at("sacrum_tip") + 0.3 * along - 0.01 * into, l.at("sacrum_tip") + 0.85 * along - 0.01 * into, into);
+  const auto face = midline(lower, l.at("sacrum_tip") + 0.3 * along - 0.01 * into,
+                            l.at("sacrum_tip") + 0.85 * along - 0.01 * into, into);
   m["sacrococcygeal_angle"] = angle(promontory - tip, face.back() - face.front());
 
   const auto& p = a.parameters.pelvis;
-  a.requested.insert({{"obstetric_conjugate", p.obstetric_conjugate}, {"transverse_inlet", p.transverse_inlet},
-                      {"interspinous", p.interspinous}, {"intertuberous", p.intertuberous}, {"sagittal_outlet", p.sagittal_outlet},
-                      {"pubic_arch_angle", p.pubic_arch_angle}, {"sacral_height", p.sacral_height},
+  a.requested.insert({{"obstetric_conjugate", p.obstetric_conjugate},
+                      {"transverse_inlet", p.transverse_inlet},
+                      {"interspinous", p.interspinous},
+                      {"intertuberous", p.intertuberous},
+                      {"sagittal_outlet", p.sagittal_outlet},
+                      {"pubic_arch_angle", p.pubic_arch_angle},
+                      {"sacral_height", p.sacral_height},
                       {"sacrococcygeal_angle", p.sacrococcygeal_angle}});
 }
 
 void measure_fetus(Anatomy& a) {
   const Surface skin{a.fetus.mesh.nodes, mesh::boundary(a.fetus.mesh)};
-  const auto bone = surface_of(a.fetus, skull);
   const auto& l = a.landmarks;
   const auto& p = a.parameters.fetus;
   auto& m = a.measured;
   const Vec3 c = l.at("head_centre");
   const auto along = [&](const char* name) { return Vec3((l.at(name) - c).normalized()); };
-  // Diameters over the scalp; where neck and chest lie on the skull they are the skull's with the scalp added.
-  const auto over_scalp = [&](const Vec3& dir) { return diameter(bone, c, dir) + 2 * p.skin_thickness; };
+  // In the head's sagittal plane the far ends lie in the neck: twice the free half.
+  const auto twice = [&](const char* name) { return 2 * hits(skin, c, along(name)).second; };
   m["biparietal"] = diameter(skin, c, along("biparietal_right"));
-  m["occipitofrontal"] = over_scalp(along("occiput"));
-  m["suboccipitobregmatic"] = over_scalp(along("head_top"));
+  m["occipitofrontal"] = twice("occiput");
+  m["suboccipitobregmatic"] = twice("head_top");
   const Vec3 shoulders = (l.at("shoulder_right") + l.at("shoulder_left")) / 2;
-  const Vec3 across = (l.at("shoulder_right") - shoulders).normalized(), up = (l.at("breech") - l.at("vertex")).normalized();
+  const Vec3 across = (l.at("shoulder_right") - shoulders).normalized(),
+             up = (l.at("breech") - l.at("vertex")).normalized();
   m["shoulder_width"] = 0;
-  for (int k = -10; k <= 10; ++k) m["shoulder_width"] = std::max(m["shoulder_width"], diameter(skin, shoulders + 0.002 * k * up, across));
-  m["length"] = diameter(skin, (l.at("breech") + l.at("vertex")) / 2, up);
+  for (int k = -10; k <= 10; ++k)
+    m["shoulder_width"] = std::max(m["shoulder_width"], diameter(skin, shoulders + 0.002 * k * up, across));
+  double low = far, high = -far;
+  for (const auto& x : a.fetus.mesh.nodes) low = std::min(low, x.dot(up)), high = std::max(high, x.dot(up));
+  m["length"] = high - low;
   // Densities: the paper's, skin 400, body and skull 950 kg/m^3.
   m["mass_kg"] = 0;
   for (std::size_t e = 0; e < a.fetus.mesh.tets.size(); ++e)
     m["mass_kg"] += mesh::volume(a.fetus.mesh, e) * (a.fetus.mesh.labels[e] == fetal_skin ? 400 : 950);
-  a.requested.insert({{"biparietal", p.biparietal}, {"occipitofrontal", p.occipitofrontal},
-                      {"suboccipitobregmatic", p.suboccipitobregmatic}, {"shoulder_width", p.shoulder_width}, {"length", p.length}});
+  a.requested.insert({{"biparietal", p.biparietal},
+                      {"occipitofrontal", p.occipitofrontal},
+                      {"suboccipitobregmatic", p.suboccipitobregmatic},
+                      {"shoulder_width", p.shoulder_width},
+                      {"length", p.length}});
 }
 
 }  // namespace
@@ -188,8 +208,9 @@ void measure(Anatomy& a) {
   const double narrowest = std::min({p.pelvis.interspinous, p.pelvis.intertuberous, p.pelvis.obstetric_conjugate});
   const double presents = std::min(p.fetus.biparietal, p.fetus.suboccipitobregmatic);
   if (presents + 2 * p.uterus.wall_canal > narrowest)
-    a.warnings.push_back(fmt::format("the head ({:.1f} mm with {:.1f} mm of canal wall on each side) is wider than the bony canal ({:.1f} mm)",
-                                     presents * 1e3, p.uterus.wall_canal * 1e3, narrowest * 1e3));
+    a.warnings.push_back(fmt::format(
+        "the head ({:.1f} mm with {:.1f} mm of canal wall on each side) is wider than the bony canal ({:.1f} mm)",
+        presents * 1e3, p.uterus.wall_canal * 1e3, narrowest * 1e3));
 }
 
 }  // namespace carus::anatomy

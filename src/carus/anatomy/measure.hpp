@@ -5,8 +5,8 @@
 
 namespace carus::anatomy {
 
-/// Fills `requested` and `measured`: pelvimetry and biometry taken on the meshes [m, rad], mass [kg], volumes [m^3]; and warnings
-/// about what is impossible or unusual. Needs parameters, bodies and landmarks.
+/// Fills `requested` and `measured`: pelvimetry and biometry taken on the meshes [m, rad], mass [kg], volumes [m^3];
+/// and warnings about what is impossible or unusual. Needs parameters, bodies and landmarks.
 void measure(Anatomy& a);
 
 }  // namespace carus::anatomy

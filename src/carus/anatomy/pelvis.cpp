@@ -15,13 +15,13 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 
 // Proportions that no pelvimetry names [m].
-constexpr double symphysis_lean = 0.0025;   // the lower end of the symphysis stands behind the upper
+constexpr double symphysis_lean = 0.0025;  // the lower end of the symphysis stands behind the upper
 constexpr double coccyx_length = 0.025;
-constexpr double hinge_at = 0.55;           // of the sacral arc: the third sacral vertebra
+constexpr double hinge_at = 0.55;  // of the sacral arc: the third sacral vertebra
 constexpr double unrolling_radius = 0.062;
 constexpr double ramus_radius = 0.007;
-constexpr double sacrum_above = 0.012;      // top of the first sacral vertebra above the promontory
-constexpr double edge = 0.003;              // rounding of plates' edges
+constexpr double sacrum_above = 0.012;  // top of the first sacral vertebra above the promontory
+constexpr double edge = 0.003;          // rounding of plates' edges
 constexpr double wing_height = 0.075;
 const Vec2 tuber_yz(0.046, -0.106);
 
@@ -29,9 +29,10 @@ const Vec2 tuber_yz(0.046, -0.106);
 Vec2 meet(const Vec2& A, double a, const Vec2& B, double b) {
   const double d = (B - A).norm(), t = (a * a - b * b + d * d) / (2 * d), h2 = a * a - t * t;
   if (h2 <= 0)
-    throw InputError(fmt::format("anatomy.pelvis: sacral height, sacrococcygeal angle and sagittal outlet do not meet ({:.0f} and {:.0f} mm "
-                                 "over {:.0f} mm from promontory to symphysis); hint: keep near 98 mm, 109 deg, 116 mm",
-                                 a * 1e3, b * 1e3, d * 1e3));
+    throw InputError(fmt::format(
+        "anatomy.pelvis: sacral height, sacrococcygeal angle and sagittal outlet do not meet ({:.0f} and {:.0f} mm "
+        "over {:.0f} mm from promontory to symphysis); hint: keep near 98 mm, 109 deg, 116 mm",
+        a * 1e3, b * 1e3, d * 1e3));
   const Vec2 e = (B - A) / d;
   return A + t * e + std::sqrt(h2) * Vec2(e.y(), -e.x());
 }
@@ -51,7 +52,8 @@ Pelvis::Pelvis(const PelvisParameters& p, const CanalParameters& canal) : p_(p),
   // Anterior face: above the promontory, a circular arc of the sacral depth from P to Q, the coccyx straight to T.
   curve_.push_back(P + sacrum_above * Vec2(-0.5, 0.866));
   const Vec2 chord = sacral_tip_ - P, mid = (P + sacral_tip_) / 2, back = Vec2(chord.y(), -chord.x()).normalized();
-  const double sag = p.sacral_depth, R = (h * h / 4 + sag * sag) / (2 * sag), half_angle = std::asin(std::min(1.0, h / 2 / R));
+  const double sag = p.sacral_depth, R = (h * h / 4 + sag * sag) / (2 * sag),
+               half_angle = std::asin(std::min(1.0, h / 2 / R));
   const Vec2 centre = mid + (sag - R) * back;
   constexpr int segments = 16;
   for (int i = 0; i <= segments; ++i) {
@@ -69,21 +71,25 @@ Pelvis::Pelvis(const PelvisParameters& p, const CanalParameters& canal) : p_(p),
   tuber_s_ = axis_.nearest(tuber_);
   const Vec3 on_axis = axis_.point(p.spines_depth);
   spine_ = {p.interspinous / 2, on_axis.y() - 0.018, -p.spines_depth};
-  // Inferior rami: inner edges from the symphysis' lower end, half the pubic arch angle to each side, in the plane through the tubers.
+  // Inferior rami: inner edges from the symphysis' lower end, half the pubic arch angle to each side, in the plane
+  // through the tubers.
   const Vec3 S(0, symphysis_bottom_.x(), symphysis_bottom_.y());
   const Vec3 down = Vec3(0, tuber_.y() - S.y(), tuber_.z() - S.z()).normalized();
   const double a = p.pubic_arch_angle / 2;
-  const Vec3 inner = std::sin(a) * Vec3::UnitX() + std::cos(a) * down, outward = std::cos(a) * Vec3::UnitX() - std::sin(a) * down;
+  const Vec3 inner = std::sin(a) * Vec3::UnitX() + std::cos(a) * down,
+             outward = std::cos(a) * Vec3::UnitX() - std::sin(a) * down;
   const Vec3 front = Vec3(0, -down.z(), down.y());
-  const Vec3 offset = ramus_radius * outward + 0.006 * (front.y() > 0 ? front : Vec3(-front));
+  const Vec3 offset = (ramus_radius + 0.0007) * outward + 0.006 * (front.y() > 0 ? front : Vec3(-front));
   ramus_start_ = S + 0.004 * inner + offset;
   ramus_end_ = S + (tuber_.x() / std::sin(a)) * inner + offset;
 }
 
 double Pelvis::half_width(double s) const {
-  const double inlet = p_.transverse_inlet / 2, tubers = p_.intertuberous / 2, spines = p_.interspinous / 2 + 0.004;
+  const double inlet = p_.transverse_inlet / 2, tubers = p_.intertuberous / 2 + 0.0005,
+               spines = p_.interspinous / 2 + 0.004;
   if (s < 0) return inlet + 0.75 * -s;  // the iliac wings flare
-  return inlet + (spines - inlet) * smooth_step(0, p_.spines_depth, s) + (tubers - spines) * smooth_step(p_.spines_depth, 0.1, s);
+  return inlet + (spines - inlet) * smooth_step(0, p_.spines_depth, s) +
+         (tubers - spines) * smooth_step(p_.spines_depth, 0.1, s);
 }
 
 double Pelvis::half_depth(double s) const {
@@ -110,7 +116,7 @@ double Pelvis::innominate(const Vec3& x) const {
   const double H = p_.symphysis_height, t0 = p_.bone_thickness;
 
   // Plane shapes: pubis with superior ramus, body round the acetabulum, ischium, part that meets the sacrum, wing.
-  double plane = rectangle(u, v, 0.076, 0.105, -H, 0.002);
+  double plane = rectangle(u, v, 0.076, 0.105, -H - 0.003, 0.002);
   plane = smooth_union(plane, rectangle(u, v, 0.010, 0.105, -0.018, 0.002), 0.008);
   plane = smooth_union(plane, std::hypot(u - 0.006, v + 0.015) - 0.026, 0.008);
   const double ischium = capsule({u, v, 0}, {-0.004, -0.035, 0}, {0.004, -tuber_s_ + 0.004, 0}, 0.014, 0.012);
@@ -125,7 +131,7 @@ double Pelvis::innominate(const Vec3& x) const {
 
   const Vec3 spine_root = spine_ + Vec3(0.014, 0.004, 0);
   bone = smooth_union(bone, capsule(m, spine_ + Vec3(0.003, 0, 0), spine_root, 0.003, 0.008), 0.003);
-  bone = smooth_union(bone, capsule(m, ramus_start_, ramus_end_, ramus_radius, ramus_radius + 0.002), 0.003);
+  bone = smooth_union(bone, capsule(m, ramus_start_, ramus_end_, ramus_radius, ramus_radius), 0.003);
   // The socket of the hip, for looks: hollow, with bone left behind it.
   const Vec3 hip(half_width(0.015) + 2.1 * t0 + 0.012, 0.006, -0.015);
   return std::max(bone, 0.022 - (m - hip).norm());

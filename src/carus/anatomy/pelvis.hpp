@@ -7,10 +7,12 @@
 
 namespace carus::anatomy {
 
-/// The bony pelvis as labelled solids: two innominate bones, the fixed upper sacrum, and the lower sacrum with coccyx that can rock.
+/// The bony pelvis as labelled solids: two innominate bones, the fixed upper sacrum, and the lower sacrum with coccyx
+/// that can rock.
 ///
-/// The inner face of the innominate bones is an oval tube round the canal's axis; on it, unrolled into (u, v) = (round, up), the bone is
-/// drawn as plane shapes (ilium, pubis, ischium: what lies between is the sciatic notch and the obturator foramen) and given thickness.
+/// The inner face of the innominate bones is an oval tube round the canal's axis; on it, unrolled into (u, v) = (round,
+/// up), the bone is drawn as plane shapes (ilium, pubis, ischium: what lies between is the sciatic notch and the
+/// obturator foramen) and given thickness.
 ///
 ///     promontory P ●────── inlet, z = 0 ──────● symphysis top
 ///                  ╲ hollow                   │ symphysis, 42 mm
@@ -23,9 +25,12 @@ class Pelvis {
   /// Throws InputError if the sagittal lengths cannot meet in a triangle.
   Pelvis(const PelvisParameters& p, const CanalParameters& canal);
   [[nodiscard]] std::int32_t label(const Vec3& x) const;
-  [[nodiscard]] double distance(const Vec3& x) const;    ///< to the nearest bone, first order [m]
+  [[nodiscard]] double distance(const Vec3& x) const;  ///< to the nearest bone, first order [m]
   [[nodiscard]] double coccyx_distance(const Vec3& x) const;
-  [[nodiscard]] double channel(const Vec3& x) const;     ///< to the bony canal's inner face: negative within [m]
+  [[nodiscard]] double coccyx_level() const {
+    return axis_.nearest({0, coccyx_tip_.x(), coccyx_tip_.y()});
+  }                                                   ///< s of its tip
+  [[nodiscard]] double channel(const Vec3& x) const;  ///< to the bony canal's inner face: negative within [m]
   /// Round (from the side to the front, scaled to length) and up: the unrolled inner face.
   [[nodiscard]] Eigen::Vector2d unroll(const Vec3& x) const;
   [[nodiscard]] std::map<std::string, Vec3> landmarks() const;
@@ -40,10 +45,10 @@ class Pelvis {
   PelvisParameters p_;
   CanalAxis axis_;
   Eigen::Vector2d symphysis_bottom_, sacral_tip_, coccyx_tip_;  ///< (y, z)
-  std::vector<Eigen::Vector2d> curve_;                          ///< anterior face of sacrum and coccyx at x = 0, from above
-  std::vector<double> along_;                                   ///< arc length from the promontory
-  double tip_, end_, hinge_;                                    ///< arc lengths of Q, T, hinge
-  Vec3 tuber_, spine_, ramus_start_, ramus_end_;                ///< of the right side; tuber and spine on the inner face
+  std::vector<Eigen::Vector2d> curve_;            ///< anterior face of sacrum and coccyx at x = 0, from above
+  std::vector<double> along_;                     ///< arc length from the promontory
+  double tip_, end_, hinge_;                      ///< arc lengths of Q, T, hinge
+  Vec3 tuber_, spine_, ramus_start_, ramus_end_;  ///< of the right side; tuber and spine on the inner face
   double tuber_s_;
 };
 

@@ -20,8 +20,12 @@ class SampledField {
   [[nodiscard]] Vec3 gradient(const Vec3& x) const;
 
  private:
-  [[nodiscard]] double& at(int i, int j, int k) { return values_[(static_cast<std::size_t>(i) * n_[1] + j) * n_[2] + k]; }
-  [[nodiscard]] double at(int i, int j, int k) const { return values_[(static_cast<std::size_t>(i) * n_[1] + j) * n_[2] + k]; }
+  [[nodiscard]] double& at(int i, int j, int k) {
+    return values_[(static_cast<std::size_t>(i) * n_[1] + j) * n_[2] + k];
+  }
+  [[nodiscard]] double at(int i, int j, int k) const {
+    return values_[(static_cast<std::size_t>(i) * n_[1] + j) * n_[2] + k];
+  }
   Vec3 low_;
   double h_;
   std::array<int, 3> n_;

@@ -7,7 +7,8 @@
 
 #include "carus/core/types.hpp"
 
-/// Signed distances [m], negative inside, of the simple solids that organs are put together from. Exact or first-order near the surface.
+/// Signed distances [m], negative inside, of the simple solids that organs are put together from. Exact or first-order
+/// near the surface.
 namespace carus::anatomy {
 
 /// 0 below a, 1 above b, C1 between.

@@ -25,9 +25,9 @@ SampledField inner_field(const Parameters& p, const CanalAxis& axis, const Fetus
   const double half = std::max(p.fetus.shoulder_width / 2, p.canal.radius) + p.uterus.gap + p.uterus.wall_body + reach;
   const Vec3 end = axis.point(axis.vulva());
   const double breech_top = fetus.landmarks().at("breech").z();
-  return {f,
-          Vec3(-half, -half, end.z() - p.canal.radius - reach),
-          Vec3(half, std::max(half, end.y() + p.canal.radius + reach), breech_top + p.uterus.wall_fundus + reach), grid};
+  return {f, Vec3(-half, -half, end.z() - p.canal.radius - reach),
+          Vec3(half, std::max(half, end.y() + p.canal.radius + reach), breech_top + p.uterus.wall_fundus + reach),
+          grid};
 }
 
 }  // namespace
@@ -60,7 +60,8 @@ WallFrame Uterus::frame(const Vec3& x) const {
   w.s = axis_.nearest(x);
   w.normal = field_.gradient(x).normalized();
   const Vec3 down = axis_.tangent(w.s);
-  // On the dome the meridians run together; at its pole any direction in the plane serves, since retraction is isotropic there.
+  // On the dome the meridians run together; at its pole any direction in the plane serves, since retraction is
+  // isotropic there.
   w.dome = x.z() > fundus_ ? smooth_step(0.4, 0.8, -down.dot(w.normal)) : 0;
   Vec3 meridian = down - down.dot(w.normal) * w.normal;
   if (meridian.norm() < 1e-3) meridian = w.normal.unitOrthogonal();

@@ -6,7 +6,8 @@
 
 namespace carus::anatomy {
 
-/// The uterus with the vaginal canal as a labelled solid: one thin wall, generated from the fetus, open at the vulva only.
+/// The uterus with the vaginal canal as a labelled solid: one thin wall, generated from the fetus, open at the vulva
+/// only.
 ///
 ///     inner surface: bag of the fetus + gap, joined to a tube of the canal's radius round the axis
 ///     outer surface: inner + thickness of the region

@@ -49,7 +49,7 @@ struct KernelReport {
   std::int32_t inverted = 0;
 };
 
-/// Adds the nodal forces -dW/dx of `n` batches to f. `pressure` (per local pressure node, or null) replaces K (J-1) by its
+/// Adds the nodal forces -dW/dx of `n` batches to f. `pressure` (per local pressure node, or null) replaces dU/dJ by its
 /// nodal average. `history` has prony_terms entries per batch. No allocation; thread-safe over distinct f.
 using ElementForces = KernelReport (*)(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, Float4* f,
                                        const float* pressure, BatchHistory* history);

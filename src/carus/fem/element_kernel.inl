@@ -132,7 +132,7 @@ inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, con
     const Batch& b = batches[e];
     const Tensor F = deformation_gradient(b, x);
     const Lanes J1 = Law::volume_strain(F);
-    const Lanes p = pressure ? nodal_mean(pressure, b) : m.bulk * J1;
+    const Lanes p = pressure ? nodal_mean(pressure, b) : Law::volume_pressure(all(m.bulk), J1);
     Tensor P;
     if constexpr (fibres || prony) {
       law.first_piola(F, J1, Lanes{}, P);

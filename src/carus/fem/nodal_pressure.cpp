@@ -5,6 +5,7 @@
 #include <map>
 
 #include "carus/core/parallel.hpp"
+#include "carus/material/volumetric.hpp"
 
 namespace carus::fem {
 
@@ -61,8 +62,9 @@ void NodalPressure::update(std::vector<Block>& blocks) const {
       float volume = 0;
       for (auto s = n.first; s < n.last; ++s) volume += blocks[std::size_t(shares_[s].block)].volume[std::size_t(shares_[s].slot)];
       strain_[a] = volume / n.rest_volume - 1;
+      const float pressure = material::FiniteVolume<float>::volume_pressure(n.bulk, strain_[a]);
       for (auto s = n.first; s < n.last; ++s) {
-        blocks[std::size_t(shares_[s].block)].pressure[std::size_t(shares_[s].slot)] = n.bulk * strain_[a];
+        blocks[std::size_t(shares_[s].block)].pressure[std::size_t(shares_[s].slot)] = pressure;
       }
     }
   });
@@ -71,7 +73,8 @@ void NodalPressure::update(std::vector<Block>& blocks) const {
 double NodalPressure::energy() const {
   double sum = 0;
   for (std::size_t a = 0; a < nodes_.size(); ++a) {
-    sum += 0.5 * double(nodes_[a].bulk) * double(nodes_[a].rest_volume) * double(strain_[a]) * double(strain_[a]);
+    const double density = material::FiniteVolume<double>::volume_energy(double(nodes_[a].bulk), double(strain_[a]));
+    sum += double(nodes_[a].rest_volume) * density;
   }
   return sum;
 }

@@ -8,7 +8,7 @@
 namespace carus::fem {
 
 /// Average nodal pressure (Bonet and Burton 1998): linear tets do not lock near incompressibility when the volume ratio is that
-/// of the elements round a node, p_a = K (sum V / sum V0 - 1), and an element takes the mean of its four. Averages are taken
+/// of the elements round a node, p_a = dU/dJ at J_a = sum V / sum V0, and an element takes the mean of its four. Averages are taken
 /// within one region, so that neighbours of unlike stiffness do not share a pressure.
 class NodalPressure {
  public:
@@ -17,7 +17,7 @@ class NodalPressure {
   [[nodiscard]] bool any() const { return !nodes_.empty(); }
   /// From the current block-local positions to Block::pressure. Two passes over what they touch; no allocation.
   void update(std::vector<Block>& blocks) const;
-  /// Volumetric energy of the averaged regions, sum of V0_a K/2 (J_a - 1)^2 [J], of the last update.
+  /// Volumetric energy of the averaged regions, sum of V0_a U(J_a) [J], of the last update.
   [[nodiscard]] double energy() const;
 
  private:

@@ -22,23 +22,23 @@ inline Mat3 to_eigen(const Mat3T<double>& A) {
 template <class Law>
 double energy(const Law& law, double bulk, const Mat3& F) {
   const auto f = to_tensor(F);
-  return law.energy(f) + volumetric_energy(bulk, law.volume_strain(f));
+  return law.energy(f) + Law::volume_energy(bulk, law.volume_strain(f));
 }
 template <class Law>
 Mat3 first_piola(const Law& law, double bulk, const Mat3& F) {
   const auto f = to_tensor(F);
   const double strain = law.volume_strain(f);
   Mat3T<double> P;
-  law.first_piola(f, strain, volumetric_pressure(bulk, strain), P);
+  law.first_piola(f, strain, Law::volume_pressure(bulk, strain), P);
   return to_eigen(P);
 }
-/// dP [Pa] along dF: the isochoric part, and K (n : dF) n + K (J - 1) dn with n = d(J - 1)/dF.
+/// dP [Pa] along dF: the isochoric part, and U'' (n : dF) n + U' dn with n = d(J - 1)/dF.
 template <class Law>
 Mat3 first_piola_rate(const Law& law, double bulk, const Mat3& F, const Mat3& dF) {
   const auto f = to_tensor(F), df = to_tensor(dF);
   const auto n = law.volume_gradient(f);
-  const double p = volumetric_pressure(bulk, law.volume_strain(f));
-  return to_eigen(law.first_piola_rate(f, df) + n * (bulk * contract(n, df)) + law.volume_gradient_rate(f, df) * p);
+  const double strain = law.volume_strain(f), p = Law::volume_pressure(bulk, strain);
+  return to_eigen(law.first_piola_rate(f, df) + n * (Law::volume_stiffness(bulk, strain) * contract(n, df)) + law.volume_gradient_rate(f, df) * p);
 }
 
 /// dP_dF [Pa], symmetric.

@@ -16,6 +16,9 @@ struct HookeSmallStrain {
   CARUS_INLINE static T volume_strain(const Mat3T<T>& F) { return trace(minus_identity(F)); }
   CARUS_INLINE static Mat3T<T> volume_gradient(const Mat3T<T>&) { return identity<T>(); }
   CARUS_INLINE static Mat3T<T> volume_gradient_rate(const Mat3T<T>&, const Mat3T<T>&) { return Mat3T<T>{}; }
+  CARUS_INLINE static T volume_pressure(const T& bulk, const T& e) { return bulk * e; }
+  CARUS_INLINE static T volume_energy(const T& bulk, const T& e) { return Scalar<T>(0.5) * bulk * e * e; }
+  CARUS_INLINE static T volume_stiffness(const T& bulk, const T&) { return bulk; }
 
   /// Deviatoric energy density [J/m^3].
   CARUS_INLINE T energy(const Mat3T<T>& F) const {

@@ -15,7 +15,7 @@ struct PronyTerm {
   double tau;  ///< relaxation time [s of labour]
 };
 
-/// A material by value. Isochoric part by `law`; volumetric part K/2 (J-1)^2 with K from `poisson` (small-strain
+/// A material by value. Isochoric part by `law`; volumetric part K/4 (J^2 - 1 - 2 ln J) with K from `poisson` (small-strain
 /// equivalent).
 struct Material {
   Law law = Law::neo_hooke;

@@ -28,9 +28,10 @@ Triangle sorted(Triangle t) {
   return t;
 }
 
-/// A triangulated surface's nodes put against another's facets, facets in order of their lowest x so that a sweep can stop early.
-double least_node_to_facet(const std::vector<Vec3>& xa, const std::vector<std::int32_t>& nodes, const std::vector<Vec3>& xb,
-                           const Triangles& b) {
+/// A triangulated surface's nodes put against another's facets, facets in order of their lowest x so that a sweep can
+/// stop early.
+double least_node_to_facet(const std::vector<Vec3>& xa, const std::vector<std::int32_t>& nodes,
+                           const std::vector<Vec3>& xb, const Triangles& b) {
   struct Bounded {
     Eigen::AlignedBox3d box;
     Triangle t;
@@ -43,7 +44,8 @@ double least_node_to_facet(const std::vector<Vec3>& xa, const std::vector<std::i
     widest = std::max(widest, box.sizes().x());
     sweep.push_back({box, t});
   }
-  std::sort(sweep.begin(), sweep.end(), [](const Bounded& l, const Bounded& r) { return l.box.min().x() < r.box.min().x(); });
+  std::sort(sweep.begin(), sweep.end(),
+            [](const Bounded& l, const Bounded& r) { return l.box.min().x() < r.box.min().x(); });
   double best = std::numeric_limits<double>::infinity();
   for (const auto i : nodes) {
     const Vec3& p = xa[i];

@@ -8,6 +8,7 @@
 
 #include "carus/anatomy/abdomen.hpp"
 #include "carus/anatomy/measure.hpp"
+#include "carus/meshing/keep_clear.hpp"
 #include "carus/meshing/labelled_solid.hpp"
 #include "carus/meshing/layer.hpp"
 #include "carus/meshing/raise_altitudes.hpp"
@@ -19,40 +20,62 @@ namespace {
 
 using namespace anatomy;
 
-/// A facet of edge h that spans a surface of radius R keeps a sagitta of about h^2 / (6 R) from it (circumradius h/sqrt 3).
+/// A facet of edge h that spans a surface of radius R keeps a sagitta of about h^2 / (6 R) from it (circumradius h/sqrt
+/// 3).
 constexpr double bag_radius = 0.05;
-constexpr double altitude_of_edge = 0.25;  // what altitudes are raised to, of the edge
+constexpr double altitude_of_edge = 0.25;   // what altitudes are raised to, of the edge
+constexpr double least_clearance = 0.0007;  // between bodies, whatever the facets [m]
 double sagitta(double h) { return h * h / (6 * bag_radius); }
 
-mesh::TetMesh mesh_fetus(const Parameters& p, const Fetus& fetus) {
+mesh::TetMesh mesh_fetus(const Parameters& p, const Fetus& fetus, const Uterus& uterus) {
   const double h = p.mesh.fetus;
   const Vec3 middle(0, 0, fetus.bottom_z() + p.fetus.length / 2);
-  auto m = mesh_labelled_solid([&](const Vec3& x) { return fetus.core(x); }, {middle, 0.55 * p.fetus.length + 0.01},
-                             {.facet = [=](const Vec3&, std::int32_t, std::int32_t) { return h; },
-                              .distance = [=](const Vec3&, std::int32_t a, std::int32_t) { return a == outside ? 0.10 * h : 0.15 * h; },
-                              .cell = [=](const Vec3&, std::int32_t) { return 1.6 * h; },
-                              .seed_spacing = 0.004});
+  auto m = mesh_labelled_solid(
+      [&](const Vec3& x) { return fetus.core(x); }, {middle, 0.55 * p.fetus.length + 0.01},
+      {.facet = [=](const Vec3&, std::int32_t, std::int32_t) { return h; },
+       .distance = [=](const Vec3&, std::int32_t a, std::int32_t) { return a == outside ? 0.10 * h : 0.15 * h; },
+       .cell = [=](const Vec3&, std::int32_t) { return 2.2 * h; },
+       .seed_spacing = 0.004});
   raise_altitudes(m, altitude_of_edge * h);
   const auto core = mesh::boundary(m);
-  add_layer(m, core, [&](const Vec3& x) { return fetus.on_skin(x); }, [](const Vec3&) { return fetal_skin; });
+  add_layer(
+      m, core, [&](const Vec3& x) { return fetus.on_skin(x); }, [](const Vec3&) { return fetal_skin; });
+  raise_altitudes(m, altitude_of_edge * h);
+  // The wall's inner facets reach into the bag by their sagitta.
+  keep_clear(
+      m, [&](const Vec3& x) { return -uterus.inner_distance(x); },
+      [&](const Vec3& x) { return Vec3(-uterus.frame(x).normal); }, least_clearance + sagitta(p.mesh.uterus));
   return m;
 }
 
-mesh::TetMesh mesh_abdomen(const Parameters& p, const Abdomen& solid, const Pelvis& pelvis, const Fetus& fetus) {
+mesh::TetMesh mesh_abdomen(const Parameters& p, const Abdomen& solid, const Uterus& uterus, const Pelvis& pelvis,
+                           const Fetus& fetus) {
   const auto& s = p.mesh;
   const auto soft_size = [&solid, s](const Vec3& x) {
     return std::min(s.abdomen_outer, s.abdomen_inner + 0.5 * std::max(solid.cavity(x) - 0.004, 0.0));
   };
   // Bone away from the canal (wings, backs) may be coarser: nothing touches it.
-  const auto bone_size = [&pelvis, s](const Vec3& x) { return s.bone * (1 + std::clamp(10 * pelvis.channel(x) - 0.12, 0.0, 0.4)); };
+  const auto bone_size = [&pelvis, s](const Vec3& x) {
+    return s.bone * (1 + std::clamp(10 * pelvis.channel(x) - 0.12, 0.0, 0.4));
+  };
   const double top = fetus.breech_z() + 0.12, bottom = -0.15;
   auto m = mesh_labelled_solid(
       [&](const Vec3& x) { return solid.label(x); }, {Vec3(0, 0, (top + bottom) / 2), (top - bottom) / 2 + 0.05},
-      {.facet = [=](const Vec3& x, std::int32_t, std::int32_t b) { return b >= innominate_right ? bone_size(x) : soft_size(x); },
-       .distance = [=](const Vec3& x, std::int32_t, std::int32_t b) { return b >= innominate_right ? 0.12 * s.bone : 0.08 * soft_size(x); },
-       .cell = [=](const Vec3& x, std::int32_t label) { return label >= innominate_right ? 1.3 * s.bone : 1.3 * soft_size(x); },
+      {.facet = [=](const Vec3& x, std::int32_t,
+                    std::int32_t b) { return b >= innominate_right ? bone_size(x) : soft_size(x); },
+       // Closer than this would refine without end where surfaces meet in an edge; keep_clear sees to the gap.
+       .distance = [=](const Vec3& x, std::int32_t,
+                       std::int32_t b) { return b >= innominate_right ? 0.12 * s.bone : 0.10 * soft_size(x); },
+       .cell = [=](const Vec3& x,
+                   std::int32_t label) { return label >= innominate_right ? 1.3 * s.bone : 1.3 * soft_size(x); },
        .seed_spacing = 0.004});
-  raise_altitudes(m, altitude_of_edge * std::min(s.abdomen_inner, s.bone));
+  const double altitude = altitude_of_edge * std::min(s.abdomen_inner, s.bone);
+  for (int round = 0; round < 2; ++round) {  // each undoes a little of the other; the gap has the last word
+    raise_altitudes(m, altitude);
+    keep_clear(
+        m, [&](const Vec3& x) { return uterus.outer_distance(x); },
+        [&](const Vec3& x) { return uterus.frame(x).normal; }, least_clearance);
+  }
   return m;
 }
 
@@ -62,7 +85,8 @@ Anatomy build(const Parameters& given) {
   Anatomy a;
   a.parameters = given;
   Parameters p = given;
-  // Gaps hold between meshes, not only between shapes: a convex body's facets lie inside it, a cavity's facets cut into the cavity.
+  // Gaps hold between meshes, not only between shapes: a convex body's facets lie inside it, a cavity's facets cut into
+  // the cavity.
   p.uterus.gap += sagitta(p.mesh.uterus);
   p.abdomen.gap += sagitta(p.mesh.abdomen_inner);
   const Fetus fetus(p.fetus);
@@ -70,9 +94,9 @@ Anatomy build(const Parameters& given) {
   const Pelvis pelvis(p.pelvis, p.canal);
   const Abdomen abdomen(p, uterus, pelvis);
 
-  a.fetus = {"fetus", mesh_fetus(p, fetus), {}, {}};
+  a.fetus = {"fetus", mesh_fetus(p, fetus, uterus), {}, {}};
   a.uterus = {"uterus", mesh_wall(uterus, p.mesh.uterus), {}, {}};
-  a.abdomen = {"abdomen", mesh_abdomen(p, abdomen, pelvis, fetus), {}, {}};
+  a.abdomen = {"abdomen", mesh_abdomen(p, abdomen, uterus, pelvis, fetus), {}, {}};
   name_fetus(a.fetus);
   name_uterus(a.uterus, uterus);
   name_abdomen(a.abdomen, abdomen, uterus, pelvis);

@@ -32,8 +32,8 @@ struct Seed {
   std::int32_t a, b;
 };
 
-/// Points of all surfaces found by walking along the lines of a grid, thinned to about one per facet edge, in a fixed order.
-/// CGAL's own start shoots rays from the centre and never finds a part that no Delaunay edge happens to cross.
+/// Points of all surfaces found by walking along the lines of a grid, thinned to about one per facet edge, in a fixed
+/// order. CGAL's own start shoots rays from the centre and never finds a part that no Delaunay edge happens to cross.
 std::vector<Seed> find_seeds(const LabelFunction& solid, const Sphere& bounds, const Sizing& sizing) {
   const double h = sizing.seed_spacing;
   const int n = static_cast<int>(std::ceil(bounds.radius / h));
@@ -58,8 +58,10 @@ std::vector<Seed> find_seeds(const LabelFunction& solid, const Sphere& bounds, c
     for (int it = 0; it < 24; ++it) {
       const Vec3 m = (p + q) / 2;
       const auto l = solid(m);
-      if (l == a) p = m;
-      else q = m, b = l;
+      if (l == a)
+        p = m;
+      else
+        q = m, b = l;
     }
     const auto [lo, hi] = std::minmax(a, b);
     const double spacing = 0.9 * sizing.facet(p, lo, hi);
@@ -88,10 +90,11 @@ std::vector<Seed> find_seeds(const LabelFunction& solid, const Sphere& bounds, c
 class Domain : public Base {
  public:
   Domain(const LabelFunction& solid, const Sphere& bounds, const Sizing& sizing, CGAL::Random& random)
-      : Base(CGAL::parameters::function = [&solid](const Point& p) { return static_cast<int>(solid(vec(p))); },
-             CGAL::parameters::bounding_object =
-                 Kernel::Sphere_3({bounds.centre.x(), bounds.centre.y(), bounds.centre.z()}, bounds.radius * bounds.radius),
-             CGAL::parameters::relative_error_bound = 1e-6, CGAL::parameters::p_rng = &random),
+      : Base(
+            CGAL::parameters::function = [&solid](const Point& p) { return static_cast<int>(solid(vec(p))); },
+            CGAL::parameters::bounding_object = Kernel::Sphere_3(
+                {bounds.centre.x(), bounds.centre.y(), bounds.centre.z()}, bounds.radius * bounds.radius),
+            CGAL::parameters::relative_error_bound = 1e-6, CGAL::parameters::p_rng = &random),
         seeds_(find_seeds(solid, bounds, sizing)) {}
 
   struct Construct_initial_points {
@@ -121,7 +124,8 @@ struct Field {
   using Index = Domain::Index;
   std::function<double(const Vec3&, std::int32_t, std::int32_t)> f;
   FT operator()(const Point_3& p, int, const Index& index) const {
-    if (const auto* patch = boost::get<Domain::Surface_patch_index>(&index)) return f(vec(p), patch->first, patch->second);
+    if (const auto* patch = boost::get<Domain::Surface_patch_index>(&index))
+      return f(vec(p), patch->first, patch->second);
     const auto* label = boost::get<Domain::Subdomain_index>(&index);
     return f(vec(p), label ? *label : 0, 0);
   }
@@ -150,16 +154,20 @@ mesh::TetMesh mesh_labelled_solid(const LabelFunction& solid, const Sphere& boun
   CGAL::Random random(0);
   const Domain domain(solid, bounds, sizing, random);
   if (domain.seeds() < 4)
-    throw InputError("meshing: the solid has no surface within its bounding sphere; hint: check its size against seed_spacing");
+    throw InputError(
+        "meshing: the solid has no surface within its bounding sphere; hint: check its size against seed_spacing");
 
   // CGAL bounds circumradii: R of the facet's Delaunay ball, equilateral edge sqrt(3) R, regular tet edge sqrt(8/3) R.
-  const Field facet{[&](const Vec3& p, std::int32_t a, std::int32_t b) { return sizing.facet(p, a, b) / std::sqrt(2.2); }};
+  const Field facet{
+      [&](const Vec3& p, std::int32_t a, std::int32_t b) { return sizing.facet(p, a, b) / std::sqrt(2.2); }};
   const Field distance{sizing.distance};
-  const Field cell{[&](const Vec3& p, std::int32_t label, std::int32_t) { return sizing.cell(p, label) / std::sqrt(1.9); }};
+  const Field cell{
+      [&](const Vec3& p, std::int32_t label, std::int32_t) { return sizing.cell(p, label) / std::sqrt(1.9); }};
   const Criteria criteria(CGAL::parameters::facet_angle = 25, CGAL::parameters::facet_size = facet,
                           CGAL::parameters::facet_distance = distance, CGAL::parameters::cell_radius_edge_ratio = 2.5,
                           CGAL::parameters::cell_size = cell);
-  auto c3t3 = CGAL::make_mesh_3<Complex>(domain, criteria, CGAL::parameters::no_perturb(), CGAL::parameters::no_exude());
+  auto c3t3 =
+      CGAL::make_mesh_3<Complex>(domain, criteria, CGAL::parameters::no_perturb(), CGAL::parameters::no_exude());
   // No time limits: they would make the mesh depend on the machine.
   CGAL::perturb_mesh_3(c3t3, domain, CGAL::parameters::sliver_bound = sizing.sliver_bound_deg);
   CGAL::exude_mesh_3(c3t3, CGAL::parameters::sliver_bound = sizing.sliver_bound_deg);

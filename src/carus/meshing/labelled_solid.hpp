@@ -15,18 +15,19 @@ struct Sphere {
   double radius;  ///< [m]
 };
 
-/// What the tetrahedra may look like. Fields are called with a point and the labels of the facet's two sides (a < b) or of the cell.
+/// What the tetrahedra may look like. Fields are called with a point and the labels of the facet's two sides (a < b) or
+/// of the cell.
 struct Sizing {
   std::function<double(const Vec3&, std::int32_t a, std::int32_t b)> facet;     ///< edge of a facet [m]
   std::function<double(const Vec3&, std::int32_t a, std::int32_t b)> distance;  ///< facet to surface [m]
   std::function<double(const Vec3&, std::int32_t label)> cell;                  ///< edge of a tet [m]
-  double seed_spacing;         ///< spacing of the grid that finds every part of the surface [m]: less than the thinnest part
+  double seed_spacing;  ///< spacing of the grid that finds every part of the surface [m]: less than the thinnest part
   double sliver_bound_deg = 12;  ///< dihedral angle up to which perturbation and exudation go on
 };
 
-/// Conforming tetrahedra of a labelled solid by Delaunay refinement (CGAL Mesh_3), then perturbation and exudation of slivers.
-/// The same input gives the same mesh bit for bit: nothing is random, nothing depends on time. Sequential; seconds to a minute.
-/// Throws InputError if the solid is empty within the sphere.
+/// Conforming tetrahedra of a labelled solid by Delaunay refinement (CGAL Mesh_3), then perturbation and exudation of
+/// slivers. The same input gives the same mesh bit for bit: nothing is random, nothing depends on time. Sequential;
+/// seconds to a minute. Throws InputError if the solid is empty within the sphere.
 mesh::TetMesh mesh_labelled_solid(const LabelFunction& solid, const Sphere& bounds, const Sizing& sizing);
 
 }  // namespace carus::meshing

@@ -11,8 +11,11 @@
 namespace carus::meshing {
 namespace {
 
-constexpr double flat = 0.94;  // cosine between a facet and the mean of the surface about a node that may slide in it (20 degrees)
+constexpr double flat =
+    0.94;  // cosine between a facet and the mean of the surface about a node that may slide in it (20 degrees)
 constexpr int passes = 8;
+constexpr double allowance = 0.25;  // of the target: how far a surface may be left, within what facets leave it anyway
+constexpr double slim = 0.12;       // smallest altitude over longest edge
 
 enum class Freedom { fixed, slides, free };
 
@@ -43,12 +46,16 @@ std::vector<Node> freedoms(const mesh::TetMesh& m) {
   std::vector<Node> nodes(m.nodes.size());
   std::vector<std::pair<int, int>> patch(m.nodes.size());
   const auto facets = interfaces(m);
-  const auto area = [&](const mesh::Triangle& t) { return Vec3((m.nodes[t[1]] - m.nodes[t[0]]).cross(m.nodes[t[2]] - m.nodes[t[0]])); };
+  const auto area = [&](const mesh::Triangle& t) {
+    return Vec3((m.nodes[t[1]] - m.nodes[t[0]]).cross(m.nodes[t[2]] - m.nodes[t[0]]));
+  };
   for (const auto& [key, f] : facets)
     for (const auto i : f.first) {
       auto& n = nodes[i];
-      if (n.freedom == Freedom::free) n.freedom = Freedom::slides, patch[i] = f.second;
-      else if (patch[i] != f.second) n.freedom = Freedom::fixed;
+      if (n.freedom == Freedom::free)
+        n.freedom = Freedom::slides, patch[i] = f.second;
+      else if (patch[i] != f.second)
+        n.freedom = Freedom::fixed;
       n.normal += area(f.first);
     }
   for (const auto& [key, f] : facets)
@@ -58,23 +65,39 @@ std::vector<Node> freedoms(const mesh::TetMesh& m) {
   return nodes;
 }
 
-/// Smallest altitude: 6 V over twice the largest facet's area; negative if turned over.
-double altitude(const mesh::TetMesh& m, const mesh::Tet& t) {
+/// Smallest altitude (6 V over twice the largest facet's area) as a part of what is wanted: `target`, or so much of the
+/// longest edge that dihedral angles stay above about 7 degrees. 1 is good enough; negative if turned over.
+double score(const mesh::TetMesh& m, const mesh::Tet& t, double target) {
   const Vec3 &a = m.nodes[t[0]], u = m.nodes[t[1]] - a, v = m.nodes[t[2]] - a, w = m.nodes[t[3]] - a;
-  const double largest = std::max({u.cross(v).squaredNorm(), v.cross(w).squaredNorm(), w.cross(u).squaredNorm(), (v - u).cross(w - u).squaredNorm()});
-  return u.cross(v).dot(w) / std::sqrt(largest);
+  const double largest = std::max({u.cross(v).squaredNorm(), v.cross(w).squaredNorm(), w.cross(u).squaredNorm(),
+                                   (v - u).cross(w - u).squaredNorm()});
+  const double longest = std::sqrt(std::max({u.squaredNorm(), v.squaredNorm(), w.squaredNorm(), (v - u).squaredNorm(),
+                                             (w - u).squaredNorm(), (w - v).squaredNorm()}));
+  return u.cross(v).dot(w) / std::sqrt(largest) / std::max(target, slim * longest);
+}
+
+/// Brings a node back to where its freedom lets it be.
+Vec3 allowed(const Node& n, const Vec3& first, const Vec3& x, double off) {
+  Vec3 moved = x - first;
+  if (n.freedom == Freedom::fixed && moved.norm() > off) moved *= off / moved.norm();
+  if (n.freedom == Freedom::slides) {
+    const double out = moved.dot(n.normal);
+    moved += (std::clamp(out, -off, off) - out) * n.normal;
+  }
+  return first + moved;
 }
 
 }  // namespace
 
 void raise_altitudes(mesh::TetMesh& m, double target) {
   const auto nodes = freedoms(m);
+  const auto first = m.nodes;
   std::vector<std::vector<std::int32_t>> star(m.nodes.size());
   for (std::size_t e = 0; e < m.tets.size(); ++e)
     for (const auto i : m.tets[e]) star[i].push_back(static_cast<std::int32_t>(e));
   const auto worst = [&](std::int32_t i) {
     double least = std::numeric_limits<double>::infinity();
-    for (const auto e : star[i]) least = std::min(least, altitude(m, m.tets[e]));
+    for (const auto e : star[i]) least = std::min(least, score(m, m.tets[e], target));
     return least;
   };
   std::vector<Vec3> directions;
@@ -85,18 +108,15 @@ void raise_altitudes(mesh::TetMesh& m, double target) {
 
   for (int pass = 0; pass < passes; ++pass)
     for (const auto& tet : m.tets) {
-      if (altitude(m, tet) >= target) continue;
+      if (score(m, tet, target) >= 1) continue;
       for (const auto i : tet) {
-        if (nodes[i].freedom == Freedom::fixed) continue;
         double best = worst(i);
         const Vec3 start = m.nodes[i];
         Vec3 chosen = start;
         for (const double step : {1.0, 0.5, 0.25, 0.1})
           for (const Vec3& d : directions) {
-            Vec3 move = step * target * d;
-            if (nodes[i].freedom == Freedom::slides) move -= move.dot(nodes[i].normal) * nodes[i].normal;
-            m.nodes[i] = start + move;
-            if (const double w = worst(i); w > best + 1e-7) best = w, chosen = m.nodes[i];
+            m.nodes[i] = allowed(nodes[i], first[i], start + step * target * d, allowance * target);
+            if (const double w = worst(i); w > best + 1e-4) best = w, chosen = m.nodes[i];
           }
         m.nodes[i] = chosen;
       }

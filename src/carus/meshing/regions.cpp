@@ -65,8 +65,9 @@ std::vector<std::int32_t> best_node(const mesh::TetMesh& m, const std::vector<st
                             [&](std::int32_t i, std::int32_t j) { return score(m.nodes[i]) < score(m.nodes[j]); })};
 }
 
-constexpr double tie_low = 0.010, tie_high = 0.032;   // z of the ring where the lower uterus hangs on the pelvis [m]
-constexpr double on_plane = 0.0015;                   // [m]
+constexpr double tie_low = 0.010, tie_high = 0.032;  // z of the ring where the lower uterus hangs on the pelvis [m]
+constexpr double buttocks_depth = 0.020;  // from the canal [m]: the far side of the pelvic floor, not its ends
+constexpr double on_plane = 0.0015;       // [m]
 
 }  // namespace
 
@@ -80,12 +81,15 @@ void name_uterus(Body& body, const anatomy::Uterus& uterus) {
   const auto& axis = uterus.axis();
   const auto skin = mesh::boundary(m);
   const Vec3 end = axis.point(axis.vulva()), end_normal = axis.tangent(axis.vulva());
-  const auto rim = [&](const Facet& f) { return (f.centre - end).dot(end_normal) > -on_plane && f.normal.dot(end_normal) > 0.7; };
+  const auto rim = [&](const Facet& f) {
+    return (f.centre - end).dot(end_normal) > -on_plane && f.normal.dot(end_normal) > 0.7;
+  };
   const auto outward = [&](const Facet& f) { return f.normal.dot(uterus.frame(f.centre).normal) > 0; };
   const auto inner = select(m, skin, [&](const Facet& f) { return !rim(f) && !outward(f); });
   const auto outer = select(m, skin, [&](const Facet& f) { return !rim(f) && outward(f); });
   const auto muscle = owned(m, outer, [](std::int32_t l) { return l != anatomy::vaginal_canal; });
-  const auto upper = owned(m, outer, [](std::int32_t l) { return l == anatomy::uterine_fundus || l == anatomy::uterine_body; });
+  const auto upper =
+      owned(m, outer, [](std::int32_t l) { return l == anatomy::uterine_fundus || l == anatomy::uterine_body; });
   body.surfaces.push_back({"inner", inner});
   body.surfaces.push_back({"outer", outer});
   body.surfaces.push_back({"contraction", muscle});
@@ -94,26 +98,35 @@ void name_uterus(Body& body, const anatomy::Uterus& uterus) {
 
   const auto outer_nodes = mesh::nodes_of(outer);
   body.nodes.push_back({"vaginal_canal", nodes_of_label(m, anatomy::vaginal_canal)});
-  body.nodes.push_back({"lower_uterus_tie", nodes_where(m, outer_nodes, [](const Vec3& x) { return x.z() > tie_low && x.z() < tie_high; })});
+  body.nodes.push_back({"lower_uterus_tie", nodes_where(m, outer_nodes, [](const Vec3& x) {
+                          return x.z() > tie_low && x.z() < tie_high;
+                        })});
   body.nodes.push_back({"vulva", mesh::nodes_of(select(m, skin, rim))});
-  body.nodes.push_back({"point_fundus", best_node(m, outer_nodes, [](const Vec3& x) { return x.z() - 0.1 * x.head<2>().norm(); })});
+  body.nodes.push_back(
+      {"point_fundus", best_node(m, outer_nodes, [](const Vec3& x) { return x.z() - 0.1 * x.head<2>().norm(); })});
   const auto lower = nodes_where(m, outer_nodes, [](const Vec3& x) { return x.z() > 0.005 && x.z() < 0.035; });
-  body.nodes.push_back({"point_lower", best_node(m, lower, [](const Vec3& x) { return x.y() - std::abs(x.x()) - std::abs(x.z() - 0.02); })});
+  body.nodes.push_back({"point_lower", best_node(m, lower, [](const Vec3& x) {
+                          return x.y() - std::abs(x.x()) - std::abs(x.z() - 0.02);
+                        })});
   // The lateral points: at two thirds of the height from inlet to dome.
   const double level = 2.0 / 3.0 * uterus.fundus_z();
   for (const double side : {1.0, -1.0})
-    body.nodes.push_back({side > 0 ? "point_right" : "point_left",
-                          best_node(m, outer_nodes, [&](const Vec3& x) { return side * x.x() - std::abs(x.y()) - std::abs(x.z() - level); })});
+    body.nodes.push_back({side > 0 ? "point_right" : "point_left", best_node(m, outer_nodes, [&](const Vec3& x) {
+                            return side * x.x() - std::abs(x.y()) - std::abs(x.z() - level);
+                          })});
 }
 
-void name_abdomen(Body& body, const anatomy::Abdomen& abdomen, const anatomy::Uterus& uterus, const anatomy::Pelvis& pelvis) {
+void name_abdomen(Body& body, const anatomy::Abdomen& abdomen, const anatomy::Uterus& uterus,
+                  const anatomy::Pelvis& pelvis) {
   const auto& m = body.mesh;
   const auto skin = mesh::boundary(m);
   const auto soft = [](std::int32_t l) { return l < anatomy::innominate_right; };
   const auto bare_soft = owned(m, skin, soft);
   const auto& axis = pelvis.axis();
   const Vec3 end = axis.point(axis.vulva()), end_normal = axis.tangent(axis.vulva());
-  const auto at_vulva = [&](const Facet& f) { return std::abs((f.centre - end).dot(end_normal)) < on_plane && f.normal.dot(end_normal) > 0.7; };
+  const auto at_vulva = [&](const Facet& f) {
+    return std::abs((f.centre - end).dot(end_normal)) < on_plane && f.normal.dot(end_normal) > 0.7;
+  };
   const auto inwards = [&](const Facet& f) {
     // Facing the cavity: close to its wall, and the distance to it falls along the outward normal.
     constexpr double e = 0.001;
@@ -128,8 +141,15 @@ void name_abdomen(Body& body, const anatomy::Abdomen& abdomen, const anatomy::Ut
   const auto is_outer = [&](const Facet& f) { return !inwards(f) && !at_vulva(f); };
   const auto outer = select(m, bare_soft, is_outer);
   const auto front = select(m, outer, [](const Facet& f) { return f.centre.z() > 0.002 && f.normal.y() > 0.3; });
-  const auto back = select(m, outer, [](const Facet& f) { return f.centre.z() > 0.002 && f.normal.y() < -0.5; });
-  const auto thighs = select(m, outer, [&](const Facet& f) { return f.centre.z() < -0.002 && std::abs(f.centre.x()) > 0.06 && uterus.outer_distance(f.centre) > 0.02; });
+  // The birth chair holds the back and, below the sacrum, the buttocks: the far side of the pelvic floor.
+  const auto back = select(m, outer, [&](const Facet& f) {
+    if (f.centre.z() > 0.002) return f.normal.y() < -0.5;
+    return pelvis.axis().nearest(f.centre) > axis.vulva() - anatomy::Abdomen::floor_height &&
+           uterus.outer_distance(f.centre) > buttocks_depth;
+  });
+  const auto thighs = select(m, outer, [&](const Facet& f) {
+    return f.centre.z() < -0.002 && std::abs(f.centre.x()) > 0.06 && uterus.outer_distance(f.centre) > 0.02;
+  });
   body.surfaces.push_back({"front", front});
   body.surfaces.push_back({"back", back});
   body.surfaces.push_back({"thighs", thighs});

@@ -73,14 +73,17 @@ mesh::TetMesh mesh_wall(const anatomy::Uterus& uterus, double h) {
     const double polar = pi / 2 * k / rows;
     const int n = std::min(around, std::max(6, static_cast<int>(std::lround(around * std::sin(polar)))));
     add_ring(n, [&](double a) {
-      return on_inner(uterus, centre, Vec3(std::cos(a) * std::sin(polar), std::sin(a) * std::sin(polar), std::cos(polar)));
+      return on_inner(uterus, centre,
+                      Vec3(std::cos(a) * std::sin(polar), std::sin(a) * std::sin(polar), std::cos(polar)));
     });
   }
   const int tube = static_cast<int>(std::lround((end - top) / (row * h)));
   for (int k = 0; k <= tube; ++k) {
     const double s = top + (end - top) * k / tube;
     const Vec3 t = axis.tangent(s), front(0, -t.z(), t.y());
-    add_ring(around, [&](double a) { return on_inner(uterus, axis.point(s), std::cos(a) * Vec3::UnitX() + std::sin(a) * front); });
+    add_ring(around, [&](double a) {
+      return on_inner(uterus, axis.point(s), std::cos(a) * Vec3::UnitX() + std::sin(a) * front);
+    });
   }
 
   mesh::Triangles surface;

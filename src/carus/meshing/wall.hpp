@@ -5,8 +5,9 @@
 
 namespace carus::meshing {
 
-/// The uterine wall as one layer of prisms on a surface of staggered rings about the canal's axis, from the pole of the dome to a flat end
-/// at the vulva. h: edge [m]. No CGAL: the wall's rings are its coordinates, its end is exactly plane, its altitudes are near its thickness.
+/// The uterine wall as one layer of prisms on a surface of staggered rings about the canal's axis, from the pole of the
+/// dome to a flat end at the vulva. h: edge [m]. No CGAL: the wall's rings are its coordinates, its end is exactly
+/// plane, its altitudes are near its thickness.
 mesh::TetMesh mesh_wall(const anatomy::Uterus& uterus, double h);
 
 }  // namespace carus::meshing

@@ -27,7 +27,7 @@ struct Moment {
   Strain::Field strain;
   HeadSkin::Load skin;
   double driving, axial;  // [N] contact on the fetus along the tangent: what pushes down, and the net
-  double gap;             // [m] independent check
+  std::vector<Penetration> gaps;  // independent check, per pair of bodies
 };
 
 double percentile(std::vector<double> v, double share) {
@@ -274,7 +274,22 @@ struct Observer::Impl {
 
   void add_numerics() {
     add("least_gap_mm", [](const Moment& m) { return per_mm * m.seen.least_gap; });
-    add("penetration_mm", [](const Moment& m) { return per_mm * std::max(0.0, -m.gap); });
+    // Deepest over the pairs of bodies, to flat facets and to the smooth surface; then the latter by pair.
+    add("penetration_mm", [](const Moment& m) {
+      double deepest = 0;
+      for (const auto& p : m.gaps) deepest = std::max(deepest, -p.least_gap);
+      return per_mm * deepest;
+    });
+    add("penetration_smooth_mm", [](const Moment& m) {
+      double deepest = 0;
+      for (const auto& p : m.gaps) deepest = std::max(deepest, -p.least_smooth_gap);
+      return per_mm * deepest;
+    });
+    const auto pairs = penetration.check(model.mesh.nodes);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      add("penetration_" + pairs[i].a + "_" + pairs[i].b + "_mm",
+          [i](const Moment& m) { return per_mm * std::max(0.0, -m.gaps[i].least_smooth_gap); });
+    }
     add("min_J_ratio", [](const Moment& m) { return *std::min_element(m.strain.J.begin(), m.strain.J.end()); });
     add("inverted_count", [](const Moment& m) {
       return double(std::count_if(m.strain.J.begin(), m.strain.J.end(), [](double J) { return !(J > 0); }));
@@ -284,7 +299,7 @@ struct Observer::Impl {
   [[nodiscard]] Moment moment(const fem::State& state, const solve::Observables& seen, const Values* previous) const {
     const auto& rest = model.mesh.nodes;
     Moment m{state, seen, previous, best_fit(rest, state.x, skull), best_fit(rest, state.x, trunk), 0, {}, strain.field(state.x),
-             skin.load(state.x, seen.contact_force), 0, 0, setup.gap_search};
+             skin.load(state.x, seen.contact_force), 0, 0, penetration.check(state.x)};
     m.s = setup.canal_nearest(m.head.centre);
     m.tangent = setup.canal_tangent(m.s);
     if (!seen.contact_force.empty()) {
@@ -294,7 +309,6 @@ struct Observer::Impl {
         m.driving += std::max(0.0, f);
       }
     }
-    for (const auto& p : penetration.check(state.x)) m.gap = std::min(m.gap, p.least_gap);
     return m;
   }
 };

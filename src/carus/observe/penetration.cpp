@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "carus/core/parallel.hpp"
 #include "carus/observe/box_grid.hpp"
@@ -12,30 +11,18 @@
 namespace carus::observe {
 namespace {
 
-/// Component of every node under "shares a tet", by union-find.
-std::vector<std::int32_t> components(const mesh::TetMesh& mesh) {
-  std::vector<std::int32_t> parent(mesh.nodes.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  auto root = [&](std::int32_t n) {
-    while (parent[n] != n) n = parent[n] = parent[parent[n]];
-    return n;
-  };
-  for (const auto& t : mesh.tets) {
-    for (int k = 1; k < 4; ++k) parent[root(t[k])] = root(t[0]);
-  }
-  for (std::int32_t n = 0; n < std::int32_t(parent.size()); ++n) parent[n] = root(n);
-  return parent;
-}
+constexpr double touching = 1e-9;      // [m] less is no penetration
+constexpr double most_sagitta = 0.001;  // [m] more is an edge, not a curved surface
 
 bool has(const auto& simplex, std::int32_t node) { return std::find(simplex.begin(), simplex.end(), node) != simplex.end(); }
 
-/// All four sub-volumes of (p, tet) positive, for tets of either orientation.
+/// All four sub-volumes of (p, tet) have the tet's sign. A point on a face counts, so that none slips between two tets.
 bool inside(const Vec3& p, const std::vector<Vec3>& x, const mesh::Tet& t) {
   const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); };
   const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]], &d = x[t[3]];
-  const double sign = volume(a, b, c, d) < 0 ? -1 : 1;
-  return sign * volume(p, b, c, d) > 0 && sign * volume(a, p, c, d) > 0 && sign * volume(a, b, p, d) > 0 &&
-         sign * volume(a, b, c, p) > 0;
+  const double whole = volume(a, b, c, d), sign = whole < 0 ? -1 : 1, least = -1e-12 * std::abs(whole);
+  return sign * volume(p, b, c, d) >= least && sign * volume(a, p, c, d) >= least && sign * volume(a, b, p, d) >= least &&
+         sign * volume(a, b, c, p) >= least;
 }
 
 template <class Simplices>
@@ -53,75 +40,114 @@ double mean_diagonal(const std::vector<Box>& boxes) {
   return boxes.empty() ? 1.0 : std::max(sum / double(boxes.size()), 1e-9);
 }
 
+/// Area-weighted unit normals at the nodes of a closed surface, by node of the mesh.
+std::vector<Vec3> vertex_normals(const std::vector<Vec3>& x, const mesh::Triangles& triangles) {
+  std::vector<Vec3> normals(x.size(), Vec3::Zero());
+  for (const auto& t : triangles) {
+    const Vec3 area = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+    for (const auto n : t) normals[n] += area;
+  }
+  for (Vec3& n : normals) n.normalize();
+  return normals;
+}
+
 }  // namespace
 
-PenetrationCheck::PenetrationCheck(const fem::Model& model, double search) : model_(model), search_(search) {
-  const auto component = components(model.mesh);
-  for (const auto& surface : model.contact_surfaces) {
-    Side side{mesh::nodes_of(surface.triangles), {}};
-    std::vector<bool> behind(model.mesh.nodes.size(), false);
-    for (const auto n : side.nodes) behind[component[n]] = true;
-    for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
-      if (behind[component[model.mesh.tets[e][0]]]) side.tets.push_back(std::int32_t(e));
-    }
-    sides_.push_back(std::move(side));
+PenetrationCheck::PenetrationCheck(const fem::Model& model, double search) : search_(search) {
+  std::vector<std::size_t> body_of_node(model.mesh.nodes.size(), 0), body_of_region;
+  for (const auto& region : model.regions) {
+    const auto it = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.name == region.organ; });
+    body_of_region.push_back(std::size_t(it - bodies_.begin()));
+    if (it == bodies_.end()) bodies_.push_back({region.organ, {}, {}});
+  }
+  for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
+    const auto body = body_of_region[model.mesh.labels[e]];
+    bodies_[body].tets.push_back(model.mesh.tets[e]);
+    for (const auto n : model.mesh.tets[e]) body_of_node[n] = body;
+  }
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    bodies_[b].boundary = mesh::boundary(model.mesh, [&](std::int32_t label) { return body_of_region[label] == b; });
+  }
+  const auto add = [&](std::size_t result, std::size_t onto, const mesh::Triangles& from, bool self) {
+    auto it = std::find_if(passes_.begin(), passes_.end(), [&](const Pass& p) { return p.result == result && p.onto == onto; });
+    if (it == passes_.end()) it = passes_.insert(passes_.end(), {onto, result, {}, self});
+    const auto nodes = mesh::nodes_of(from);
+    it->nodes.insert(it->nodes.end(), nodes.begin(), nodes.end());
+  };
+  for (const auto& pair : model.contact_pairs) {
+    const auto &ta = model.contact_surfaces[pair.a].triangles, &tb = model.contact_surfaces[pair.b].triangles;
+    if (ta.empty() || tb.empty()) continue;
+    const auto a = body_of_node[ta.front()[0]], b = body_of_node[tb.front()[0]];
+    const auto key = std::minmax(a, b);
+    const auto it = std::find(joined_.begin(), joined_.end(), std::pair<std::size_t, std::size_t>(key));
+    const auto result = std::size_t(it - joined_.begin());
+    if (it == joined_.end()) joined_.emplace_back(key);
+    add(result, b, ta, a == b);
+    add(result, a, tb, a == b);
+  }
+  for (auto& pass : passes_) {
+    std::sort(pass.nodes.begin(), pass.nodes.end());
+    pass.nodes.erase(std::unique(pass.nodes.begin(), pass.nodes.end()), pass.nodes.end());
   }
 }
 
-void PenetrationCheck::pass(const std::vector<Vec3>& x, int from, int onto, Penetration& out) const {
-  const auto& triangles = model_.contact_surfaces[onto].triangles;
-  std::vector<mesh::Tet> tets;
-  for (const auto e : sides_[onto].tets) tets.push_back(model_.mesh.tets[e]);
+void PenetrationCheck::run(const std::vector<Vec3>& x, const Pass& pass, Penetration& out) const {
+  const Body& body = bodies_[pass.onto];
+  const auto& triangles = body.boundary;
+  const auto& tets = body.tets;
   const auto facet_boxes = boxes_of(x, triangles), tet_boxes = boxes_of(x, tets);
   const BoxGrid facet_grid(facet_boxes, mean_diagonal(facet_boxes)), tet_grid(tet_boxes, mean_diagonal(tet_boxes));
+  constexpr double far = std::numeric_limits<double>::infinity();
+  const auto normals = vertex_normals(x, triangles);
 
-  // Distance to the nearest facet within r, or infinity.
-  const auto distance = [&](std::int32_t node, double r) {
-    double nearest = std::numeric_limits<double>::infinity();
+  // Distance to the nearest facet within r, and the sagitta there; or infinity.
+  const auto nearest = [&](std::int32_t node, double r) {
+    Gap found{far, 0};
     const Vec3& p = x[node];
     facet_grid.visit(Box(p.array() - r, p.array() + r), [&](std::int32_t f) {
       const auto& t = triangles[f];
-      if (has(t, node) || facet_boxes[f].exteriorDistance(p) > std::min(r, nearest)) return;
+      if (facet_boxes[f].squaredExteriorDistance(p) > std::min(r * r, found.flat * found.flat) || has(t, node)) return;
       const Vec3 w = mesh::closest_point_weights(p, x[t[0]], x[t[1]], x[t[2]]);
-      nearest = std::min(nearest, (p - w[0] * x[t[0]] - w[1] * x[t[1]] - w[2] * x[t[2]]).norm());
+      const Vec3 foot = w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
+      const double d = (p - foot).norm();
+      if (d > r || d >= found.flat) return;
+      double sagitta = 0;  // ½ Σ w_k (x_k - p)·n_k, positive where the surface is convex
+      for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[t[k]] - foot).dot(normals[t[k]]);
+      found = {d, std::clamp(sagitta, -most_sagitta, most_sagitta)};
     });
-    return nearest <= r ? nearest : std::numeric_limits<double>::infinity();
+    return found;
   };
-  const auto gap = [&](std::int32_t node) {
+  const auto gap = [&](std::int32_t node) -> Gap {
     const Vec3& p = x[node];
     bool in = false;
     tet_grid.visit(Box(p, p), [&](std::int32_t e) {
       in = in || (tet_boxes[e].contains(p) && !has(tets[e], node) && inside(p, x, tets[e]));
     });
-    if (!in) return from == onto ? search_ : std::min(search_, distance(node, search_));
-    for (double r = search_; r < 1; r *= 4) {
-      if (const double d = distance(node, r); std::isfinite(d)) return -d;
-    }
-    return -1.0;
+    if (!in && pass.self) return {search_, search_};
+    Gap found = nearest(node, search_);
+    if (!in) return {std::min(search_, found.flat), std::min(search_, found.flat - found.smooth)};
+    for (double r = 4 * search_; found.flat == far; r *= 4) found = nearest(node, r);
+    return {-found.flat, -found.flat - found.smooth};
   };
 
-  const auto& nodes = sides_[from].nodes;
-  std::vector<double> gaps(nodes.size());
-  parallel::for_chunks(nodes.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
-    for (std::size_t i = begin; i < end; ++i) gaps[i] = gap(nodes[i]);
+  std::vector<Gap> gaps(pass.nodes.size());
+  parallel::for_chunks(gaps.size(), 256, [&](std::size_t begin, std::size_t end, std::size_t) {
+    for (std::size_t i = begin; i < end; ++i) gaps[i] = gap(pass.nodes[i]);
   });
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    out.penetrated += gaps[i] < 0;
-    if (gaps[i] < out.least_gap) {
-      out.least_gap = gaps[i];
-      out.node = nodes[i];
+  for (std::size_t i = 0; i < gaps.size(); ++i) {
+    out.penetrated += gaps[i].flat < -touching;
+    out.least_smooth_gap = std::min(out.least_smooth_gap, gaps[i].smooth);
+    if (gaps[i].flat < out.least_gap) {
+      out.least_gap = gaps[i].flat;
+      out.node = pass.nodes[i];
     }
   }
 }
 
 std::vector<Penetration> PenetrationCheck::check(const std::vector<Vec3>& x) const {
   std::vector<Penetration> result;
-  for (const auto& pair : model_.contact_pairs) {
-    Penetration p{search_, -1, 0};
-    pass(x, pair.a, pair.b, p);
-    if (pair.a != pair.b) pass(x, pair.b, pair.a, p);
-    result.push_back(p);
-  }
+  for (const auto& [a, b] : joined_) result.push_back({bodies_[a].name, bodies_[b].name, search_, search_, -1, 0});
+  for (const auto& pass : passes_) run(x, pass, result[pass.result]);
   return result;
 }
 

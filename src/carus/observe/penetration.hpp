@@ -1,39 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "carus/fem/model.hpp"
 
 namespace carus::observe {
 
-/// Where two contact surfaces stand, by an exact search that shares nothing with the solver's contact.
+/// How two bodies stand to each other, by an exact search that shares nothing with the solver's contact.
 struct Penetration {
+  std::string a, b;            ///< bodies (Region::organ)
   double least_gap = 0;        ///< [m] over both passes, at most `search`; negative: deepest penetration
-  std::int32_t node = -1;      ///< the node that has it
+  double least_smooth_gap = 0; ///< [m] the same against the surface that the facets stand for: see `PenetrationCheck`
+  std::int32_t node = -1;      ///< the node that has least_gap
   int penetrated = 0;          ///< nodes that lie inside the other body
 };
 
-/// Nodes of each surface of a pair against the facets of the other (both passes). A node is inside if a tet of the other's body that
-/// does not contain the node as a corner holds it; its depth is then the exact distance to the nearest facet of the surface.
-/// Self-contact (a == b) counts penetration only: a gap to one's own neighbours means nothing.
+/// Contact nodes of a body against all of another's boundary, and the other way round, for any two bodies that some contact pair joins.
+/// A node is inside if a tet of the other body holds it that does not have it as a corner; its depth is the exact distance to the
+/// nearest facet of that body's boundary, flat as it is in the mesh. A body against itself counts penetration only: a gap to one's own
+/// neighbours means nothing.
+///
+/// Flat facets of edge h cut a surface of radius R short by up to h²/6R, on either side. The smooth gap takes that off: the distance to
+/// the facet less ½ Σ w_k (x_k - p)·n_k at its nearest point p = Σ w_k x_k, n_k the normals at its corners, at most 1 mm.
 class PenetrationCheck {
  public:
   /// `search` [m]: gaps beyond it are not looked for.
   PenetrationCheck(const fem::Model& model, double search);
-  /// One entry per Model::contact_pairs.
   [[nodiscard]] std::vector<Penetration> check(const std::vector<Vec3>& x) const;
 
  private:
-  struct Side {
-    std::vector<std::int32_t> nodes;  // of the surface
-    std::vector<std::int32_t> tets;   // of the connected body behind the surface
+  struct Body {
+    std::string name;
+    std::vector<mesh::Tet> tets;
+    mesh::Triangles boundary;
   };
-  void pass(const std::vector<Vec3>& x, int from, int onto, Penetration& out) const;
+  struct Pass {
+    std::size_t onto;                 // of bodies_
+    std::size_t result;               // of joined_
+    std::vector<std::int32_t> nodes;  // contact nodes of the other body
+    bool self;
+  };
+  struct Gap {
+    double flat, smooth;  // [m]
+  };
+  void run(const std::vector<Vec3>& x, const Pass& pass, Penetration& out) const;
 
-  const fem::Model& model_;
   double search_;
-  std::vector<Side> sides_;  // one per contact surface
+  std::vector<Body> bodies_;
+  std::vector<Pass> passes_;
+  std::vector<std::pair<std::size_t, std::size_t>> joined_;
 };
 
 }  // namespace carus::observe

@@ -79,7 +79,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c) {
   write_atomically(file, [&](const std::filesystem::path& temporary) {
     const Store h(temporary, true);
     h.put("scenario_hash", c.scenario_hash), h.put("mesh_hash", c.mesh_hash), h.put("version", c.version);
-    h.put("counts", std::vector<std::int64_t>{c.rows, c.slices, c.events, c.state.step});
+    h.put("counts", std::vector<std::int64_t>{c.rows, c.stops, c.events, c.state.step});
     h.put("frame_times", c.frame_times), h.put("wall", c.wall);
     h.put("time", std::vector<double>{c.state.time});
     h.put("x", c.state.x), h.put("v", c.state.v);
@@ -104,7 +104,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   h.get("hinge_angle", c.state.hinge_angle), h.get("hinge_rate", c.state.hinge_rate);
   h.get("rest_length", c.state.rest_length), h.get("internal", c.state.internal);
   if (counts.size() != 4 || time.size() != 1) throw InputError(fmt::format("{}: counts: damaged", file.string()));
-  c.rows = counts[0], c.slices = counts[1], c.events = counts[2], c.state.step = counts[3];
+  c.rows = counts[0], c.stops = counts[1], c.events = counts[2], c.state.step = counts[3];
   c.state.time = time[0];
   return c;
 }

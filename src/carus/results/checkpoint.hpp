@@ -14,7 +14,7 @@ namespace carus::results {
 struct Checkpoint {
   fem::State state;
   std::string scenario_hash, mesh_hash, version;
-  std::int64_t rows = 0, slices = 0, events = 0;  ///< rows of curves.csv; parts of the next interval; lines of events.jsonl
+  std::int64_t rows = 0, stops = 0, events = 0;  ///< rows of curves.csv; stops of the schedule; lines of events.jsonl
   std::vector<double> frame_times;                ///< [s of labour]
   std::vector<double> wall;                       ///< [s] meshing, solving, output so far
 };

@@ -127,6 +127,7 @@ void numeric_figures(Figures& f, const Columns& column) {
   f.min_J = smallest(column("min_J_ratio"), all);
   f.inverted = largest(column("inverted_count"), all);
   f.penetration = largest(column("penetration_mm"), all);
+  f.penetration_smooth = largest(column("penetration_smooth_mm"), all);
   for (std::size_t i = 0; i < all; ++i) {
     if (time[i] > 0.05 * time.back() && internal[i] > 0) f.kinetic_over_internal = std::max(f.kinetic_over_internal, kinetic[i] / internal[i]);
   }

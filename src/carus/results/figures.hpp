@@ -35,7 +35,7 @@ struct Figures {
   double levator_stretch = 0, perineum_stretch = 0, hiatus_ratio = 0, vulva_ratio = 0;
   double expulsive_force = 0, head_force = 0, head_pressure_mean = 0;  ///< [N], [N], [kPa] maxima to birth
   double push = 0, contraction = 0, tone = 0;  ///< [mmHg] maxima of the loads
-  double min_J = 1, inverted = 0, penetration = 0, kinetic_over_internal = 0, energy_error = 0;
+  double min_J = 1, inverted = 0, penetration = 0, penetration_smooth = 0, kinetic_over_internal = 0, energy_error = 0;
   double occiput_at_crowning = 0;          ///< [deg] from anterior; at the end if it did not crown
   double rotation_at_crowning = 0;         ///< [deg] internal rotation
   double rotation_done_station = 0;        ///< [mm] station where 90 % of that rotation was there

@@ -12,37 +12,29 @@
 
 namespace carus::results {
 
-struct Frames::Grid {
-  vtkSmartPointer<vtkUnstructuredGrid> vtk;
-};
-
 Frames::Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain, double labour_per_pseudo,
                std::vector<double> times)
-    : folder_(std::move(folder)), model_(model), strain_(strain), labour_per_pseudo_(labour_per_pseudo), times_(std::move(times)),
-      grid_(std::make_unique<Grid>()) {
+    : folder_(std::move(folder)), model_(model), strain_(strain), labour_per_pseudo_(labour_per_pseudo), times_(std::move(times)) {
   std::filesystem::create_directories(folder_ / "frames");
-  grid_->vtk = tet_grid(model.mesh.nodes, model.mesh.tets);
-  std::vector<std::string> regions, organs;
-  std::vector<std::int32_t> organ_of_region, organ;
+  std::vector<std::int32_t> organ_of_region;
   for (const auto& r : model.regions) {
-    regions.push_back(r.name);
-    const auto it = std::find(organs.begin(), organs.end(), r.organ);
-    organ_of_region.push_back(std::int32_t(it - organs.begin()));
-    if (it == organs.end()) organs.push_back(r.organ);
+    regions_.push_back(r.name);
+    const auto it = std::find(organs_.begin(), organs_.end(), r.organ);
+    organ_of_region.push_back(std::int32_t(it - organs_.begin()));
+    if (it == organs_.end()) organs_.push_back(r.organ);
   }
-  for (const auto label : model.mesh.labels) organ.push_back(organ_of_region[label]);
-  set_integers(*grid_->vtk->GetCellData(), "region", model.mesh.labels);
-  set_integers(*grid_->vtk->GetCellData(), "organ", organ);
-  set_names(*grid_->vtk, "region_names", regions);
-  set_names(*grid_->vtk, "organ_names", organs);
+  for (const auto label : model.mesh.labels) organ_.push_back(organ_of_region[label]);
   write_index();
 }
 
-Frames::~Frames() = default;
-
 void Frames::write(const fem::State& state, const std::vector<Vec3>& contact_force) {
-  auto& grid = *grid_->vtk;
-  set_points(grid, state.x);
+  // A grid of its own for every frame: VTK keeps notes in arrays that it has written once, and a frame must not tell which came before.
+  const auto owned = tet_grid(state.x, model_.mesh.tets);
+  auto& grid = *owned;
+  set_integers(*grid.GetCellData(), "region", model_.mesh.labels);
+  set_integers(*grid.GetCellData(), "organ", organ_);
+  set_names(grid, "region_names", regions_);
+  set_names(grid, "organ_names", organs_);
   std::vector<Vec3> displacement(state.x.size());
   for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = state.x[i] - model_.mesh.nodes[i];
   set_vectors(*grid.GetPointData(), "displacement", displacement);

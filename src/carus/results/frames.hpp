@@ -2,7 +2,7 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
+#include <string>
 #include <vector>
 
 #include "carus/fem/model.hpp"
@@ -19,12 +19,10 @@ class Frames {
   /// `times`: of frames that are already there (resume). `labour_per_pseudo`: seconds of labour in one of pseudo-time.
   Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain, double labour_per_pseudo,
          std::vector<double> times = {});
-  ~Frames();
   void write(const fem::State& state, const std::vector<Vec3>& contact_force);
   [[nodiscard]] const std::vector<double>& times() const { return times_; }  ///< [s of labour]
 
  private:
-  struct Grid;
   void write_index() const;
 
   std::filesystem::path folder_;
@@ -32,7 +30,8 @@ class Frames {
   const observe::Strain& strain_;
   double labour_per_pseudo_;
   std::vector<double> times_;
-  std::unique_ptr<Grid> grid_;
+  std::vector<std::string> regions_, organs_;
+  std::vector<std::int32_t> organ_;  // per tet
 };
 
 }  // namespace carus::results

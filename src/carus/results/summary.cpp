@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "carus/results/summary.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 
 #include "carus/core/units.hpp"
@@ -14,9 +17,7 @@ using Json = nlohmann::ordered_json;
 /// Six significant digits are more than is measured, and keep the file readable; NaN becomes null.
 Json number(double v) {
   if (!std::isfinite(v)) return nullptr;
-  if (v == 0) return 0.0;
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(v))) - 5);
-  return std::round(v / unit) * unit;
+  return std::strtod(fmt::format("{:.6g}", v).c_str(), nullptr);
 }
 
 Json numbers(const std::vector<double>& values) {
@@ -27,7 +28,7 @@ Json numbers(const std::vector<double>& values) {
 
 Json numerics_of(const Figures& f, const RunFacts& r) {
   return {{"elements", r.elements}, {"nodes", r.nodes}, {"surface_nodes", r.surface_nodes}, {"steps", r.steps}, {"min_J", number(f.min_J)},
-          {"inverted", int(f.inverted)}, {"max_penetration_mm", number(f.penetration)},
+          {"inverted", int(f.inverted)}, {"max_penetration_mm", number(f.penetration)}, {"max_penetration_smooth_mm", number(f.penetration_smooth)},
           {"kinetic_over_internal_max", number(f.kinetic_over_internal)}, {"energy_balance_error", number(f.energy_error)},
           {"time_scaling", number(r.time_scaling)}, {"time_step_s", number(r.time_step)},
           {"unscaled_critical_step_s", number(r.unscaled_critical_step)}, {"mass_scaled_fraction", number(r.mass_scaled_fraction)},

@@ -19,35 +19,25 @@
 namespace carus::results {
 namespace {
 
-/// The array of that name, made at the first call, so that a grid can be used for frame after frame.
 template <class Array>
-Array* array_of(vtkDataSetAttributes& to, const char* name, int components, std::size_t tuples) {
-  auto* array = Array::SafeDownCast(to.GetArray(name));
-  if (!array) {
-    vtkNew<Array> made;
-    made->SetName(name);
-    made->SetNumberOfComponents(components);
-    to.AddArray(made);
-    array = made.Get();
-  }
+auto* add_array(vtkDataSetAttributes& to, const char* name, int components, std::size_t tuples) {
+  vtkNew<Array> array;
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(vtkIdType(tuples));
-  array->Modified();
-  return array;
+  to.AddArray(array);
+  return array->GetPointer(0);
 }
 
 }  // namespace
 
-void set_points(vtkUnstructuredGrid& grid, const std::vector<Vec3>& x) {
+vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const std::vector<mesh::Tet>& tets) {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToFloat();
   points->SetNumberOfPoints(vtkIdType(x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) points->SetPoint(vtkIdType(i), x[i].data());
-  grid.SetPoints(points);
-}
-
-vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const std::vector<mesh::Tet>& tets) {
   vtkNew<vtkUnstructuredGrid> grid;
-  set_points(*grid, x);
+  grid->SetPoints(points);
   vtkNew<vtkCellArray> cells;
   cells->Use32BitStorage();
   for (const auto& t : tets) cells->InsertNextCell({t[0], t[1], t[2], t[3]});
@@ -56,19 +46,19 @@ vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const 
 }
 
 void set_vectors(vtkDataSetAttributes& to, const char* name, const std::vector<Vec3>& values, double scale) {
-  float* p = array_of<vtkFloatArray>(to, name, 3, values.size())->GetPointer(0);
+  float* p = add_array<vtkFloatArray>(to, name, 3, values.size());
   for (const Vec3& v : values) {
     for (int k = 0; k < 3; ++k) *p++ = float(scale * v[k]);
   }
 }
 
 void set_scalars(vtkDataSetAttributes& to, const char* name, const std::vector<double>& values) {
-  float* p = array_of<vtkFloatArray>(to, name, 1, values.size())->GetPointer(0);
+  float* p = add_array<vtkFloatArray>(to, name, 1, values.size());
   for (const double v : values) *p++ = float(v);
 }
 
 void set_integers(vtkDataSetAttributes& to, const char* name, const std::vector<std::int32_t>& values) {
-  std::copy(values.begin(), values.end(), array_of<vtkIntArray>(to, name, 1, values.size())->GetPointer(0));
+  std::copy(values.begin(), values.end(), add_array<vtkIntArray>(to, name, 1, values.size()));
 }
 
 void set_names(vtkUnstructuredGrid& grid, const char* name, const std::vector<std::string>& values) {

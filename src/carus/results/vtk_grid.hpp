@@ -10,9 +10,8 @@
 
 namespace carus::results {
 
-/// Tets and their labels' `name` as cell data; points in single precision.
+/// Tets on points in single precision.
 vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const std::vector<mesh::Tet>& tets);
-void set_points(vtkUnstructuredGrid& grid, const std::vector<Vec3>& x);
 void set_vectors(vtkDataSetAttributes& to, const char* name, const std::vector<Vec3>& values, double scale = 1);
 void set_scalars(vtkDataSetAttributes& to, const char* name, const std::vector<double>& values);
 void set_integers(vtkDataSetAttributes& to, const char* name, const std::vector<std::int32_t>& values);

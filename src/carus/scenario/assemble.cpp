@@ -74,6 +74,7 @@ class Assembler {
     attachments();
     bones();
     ties();
+    canal_bed();
     loads();
     contacts();
     retraction();
@@ -237,6 +238,28 @@ class Assembler {
         }
     const Vec3 stiffness(s_.attachments.tie_transverse, s_.attachments.tie_transverse, s_.attachments.tie_axial);
     for (const auto& [node, part] : share) model().tethers.push_back({node, part / total * stiffness});
+  }
+
+  /// The bed of the canal, by the area of its outer face at each node: along y behind the axis, along x all round.
+  void canal_bed() {
+    const auto outer = out_.surfaces.find("uterus.outer");
+    if (outer == out_.surfaces.end()) return;
+    const std::vector<std::int32_t> canal = set_or_empty("uterus.vaginal_canal");
+    std::map<std::int32_t, double> area;
+    for (const std::int32_t n : canal) area[n] = 0;
+    for (const mesh::Triangle& t : outer->second) {
+      const Vec3 u = model().mesh.nodes[t[1]] - model().mesh.nodes[t[0]], w = model().mesh.nodes[t[2]] - model().mesh.nodes[t[0]];
+      for (const std::int32_t n : t)
+        if (const auto it = area.find(n); it != area.end()) it->second += u.cross(w).norm() / 6;
+    }
+    const anatomy::CanalAxis axis(a_.parameters.canal);
+    for (const auto& [node, a] : area) {
+      if (a == 0) continue;
+      const Vec3& x = model().mesh.nodes[node];
+      const double s = axis.nearest(x);
+      const bool behind = (x - axis.point(s)).dot(axis.tangent(s).cross(Vec3::UnitX())) < 0;
+      model().tethers.push_back({node, a * Vec3(s_.attachments.bed_lateral, behind ? s_.attachments.bed_posterior : 0, 0)});
+    }
   }
 
   void loads() {

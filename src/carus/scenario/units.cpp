@@ -34,6 +34,8 @@ constexpr std::array table{
     Unit{"mmHg", "pressure", units::mmHg},
     Unit{"kg/m^3", "density", 1},
     Unit{"g/cm^3", "density", 1e3},
+    Unit{"kPa/mm", "bed stiffness", 1e6},
+    Unit{"Pa/m", "bed stiffness", 1},
     Unit{"N/m", "stiffness", 1},
     Unit{"kN/m", "stiffness", 1e3},
     Unit{"N/mm", "stiffness", 1e3},

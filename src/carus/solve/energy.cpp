@@ -34,7 +34,7 @@ namespace {
 
 template <class Law>
 double density(const Law& law, const material::Mat3T<double>& F, double bulk) {
-  return law.energy(F) + material::volumetric_energy(bulk, Law::volume_strain(F));
+  return law.energy(F) + Law::volume_energy(bulk, Law::volume_strain(F));
 }
 
 /// Where the pressure is a nodal average, its energy belongs to the nodes (fem::NodalPressure::energy).

@@ -27,7 +27,8 @@ Bodies two(const mesh::TetMesh& a, const mesh::TetMesh& b) {
 
 Contact make(const Bodies& b, double mass, double friction = 0, Options options = {}) {
   const std::vector<Vec3> inverse(b.mesh.nodes.size(), Vec3::Constant(1 / mass));
-  return {b.surfaces, {{0, 1, friction}}, b.mesh.nodes, inverse, std::vector<std::int16_t>(inverse.size(), -1), {}, options};
+  return {b.surfaces, {{0, 1, friction}}, b.mesh.nodes, inverse, std::vector<std::int16_t>(inverse.size(), -1), {},
+          options};
 }
 
 /// The flat faces that meet, alone: whole boxes have edges, which the smooth gap takes for curvature.
@@ -37,7 +38,8 @@ Bodies faces(const mesh::TetMesh& lower, const mesh::TetMesh& upper, double z_lo
     mesh::Triangles flat;
     for (const auto& t : b.surfaces[std::size_t(label)].triangles) {
       const double z = label == 0 ? z_lower : z_upper;
-      if (std::all_of(t.begin(), t.end(), [&](auto n) { return std::abs(b.mesh.nodes[n].z() - z) < 1e-9; })) flat.push_back(t);
+      if (std::all_of(t.begin(), t.end(), [&](auto n) { return std::abs(b.mesh.nodes[n].z() - z) < 1e-9; }))
+        flat.push_back(t);
     }
     b.surfaces[std::size_t(label)] = Surface(label ? "b" : "a", flat);
   }
@@ -60,8 +62,8 @@ TEST(Contact, GapOfFlatFacesIsTheDistance) {
   }
 }
 
-/// Nodes near a faceted ball against the sphere itself. The chords cut it by up to 0.3 mm here; the smooth gap removes four
-/// fifths of that at least (vertex normals of a blown-up cube lean by a few degrees, which is what is left).
+/// Nodes near a faceted ball against the sphere itself. The chords cut it by up to 0.3 mm here; the smooth gap removes
+/// four fifths of that at least (vertex normals of a blown-up cube lean by a few degrees, which is what is left).
 TEST(Contact, SmoothGapSeesTheSphereNotTheFacets) {
   constexpr double r = 0.03;
   const Vec3 offset = 2 * (r + 2.5e-5) * Vec3(0.31, 0.22, 0.93).normalized();
@@ -81,15 +83,19 @@ TEST(Contact, SmoothGapSeesTheSphereNotTheFacets) {
     off_facets = std::max(off_facets, std::abs((p - foot).norm() - exact));
     off_smooth = std::max(off_smooth, std::abs(c.gap - exact));
   }
-  std::printf("gap to the sphere: facets are off by %.4f mm, the smooth gap by %.4f mm\n", off_facets * 1e3, off_smooth * 1e3);
+  std::printf("gap to the sphere: facets are off by %.4f mm, the smooth gap by %.4f mm\n", off_facets * 1e3,
+              off_smooth * 1e3);
   EXPECT_GT(off_facets, 1e-4);
   EXPECT_LT(off_smooth, 0.2 * off_facets);
 }
 
-/// Against an exact search that shares nothing with the contact: after a press both see the same depth within the sagitta.
+/// Against an exact search that shares nothing with the contact: after a press both see the same depth within the
+/// sagitta.
 TEST(Contact, LeastGapAgreesWithBruteForce) {
-  const auto b = two(shapes::box({-0.05, -0.05, -0.05}, {0.1, 0.1, 0.05}, 7, 6, 3, 0), shapes::ball({0.002, 0.001, 0.0297}, 0.03, 10, 1));
-  fem::Model model = models::of(b.mesh, {models::soft(material::Law::neo_hooke, 1e4, 0.4), models::soft(material::Law::neo_hooke, 1e4, 0.4)});
+  const auto b = two(shapes::box({-0.05, -0.05, -0.05}, {0.1, 0.1, 0.05}, 7, 6, 3, 0),
+                     shapes::ball({0.002, 0.001, 0.0297}, 0.03, 10, 1));
+  fem::Model model = models::of(
+      b.mesh, {models::soft(material::Law::neo_hooke, 1e4, 0.4), models::soft(material::Law::neo_hooke, 1e4, 0.4)});
   model.contact_surfaces = {{"a", b.surfaces[0].triangles}, {"b", b.surfaces[1].triangles}};
   model.contact_pairs = {{0, 1, 0}};
   auto contact = make(b, 1e-3);
@@ -150,7 +156,8 @@ TEST(Contact, PenetratedPairsLeaveAtTheCorrectionSpeed) {
 
 TEST(Contact, OpenEdgeEndsTheSurface) {
   // A single plate, open at its border; a node beside it is not held by its plane continued.
-  auto mesh = shapes::join(shapes::box({0, 0, -0.01}, {0.04, 0.04, 0.01}, 4, 4, 1, 0), shapes::box({0.05, 0.01, -5e-5}, {0.02, 0.02, 0.02}, 2, 2, 2, 1));
+  auto mesh = shapes::join(shapes::box({0, 0, -0.01}, {0.04, 0.04, 0.01}, 4, 4, 1, 0),
+                           shapes::box({0.05, 0.01, -5e-5}, {0.02, 0.02, 0.02}, 2, 2, 2, 1));
   std::vector<Surface> surfaces;
   mesh::Triangles top;
   for (const auto& t : mesh::boundary(mesh, [](int l) { return l == 0; })) {

@@ -13,7 +13,9 @@ namespace {
 TEST(TriangleGrid, ReturnsAllWithinReach) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  const auto point = [&](double size) -> Vec3 { return size * Vec3(uniform(random), uniform(random), uniform(random)); };
+  const auto point = [&](double size) -> Vec3 {
+    return size * Vec3(uniform(random), uniform(random), uniform(random));
+  };
   for (const double reach : {0.001, 0.01, 0.2}) {
     std::vector<Vec3> x;
     mesh::Triangles triangles;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "support/element_forces.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "carus/solve/energy.hpp"
-#include "support/element_forces.hpp"
 #include "support/models.hpp"
 
 namespace carus::fem {
@@ -13,15 +14,18 @@ namespace carus::fem {
 #ifdef __x86_64__
 // The instruction sets that kernel_choice.cpp chooses from.
 namespace portable {
-KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*, BatchHistory*);
+KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*,
+                    BatchHistory*);
 void volumes(const Batch*, std::size_t, const Float4*, float*);
 }  // namespace portable
 namespace avx2 {
-KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*, BatchHistory*);
+KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*,
+                    BatchHistory*);
 void volumes(const Batch*, std::size_t, const Float4*, float*);
 }  // namespace avx2
 namespace avx512 {
-KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*, BatchHistory*);
+KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*,
+                    BatchHistory*);
 void volumes(const Batch*, std::size_t, const Float4*, float*);
 }  // namespace avx512
 #endif
@@ -63,8 +67,8 @@ double largest(const std::vector<Vec3>& f) {
   return most;
 }
 
-// Float-level zero: strains are good to about 1e-6 (positions of 0.1 m in single precision over edges of 0.025 m), so a force
-// is to G times a facet's area times some 1e-5, K/G = 9.7 included.
+// Float-level zero: strains are good to about 1e-6 (positions of 0.1 m in single precision over edges of 0.025 m), so a
+// force is to G times a facet's area times some 1e-5, K/G = 9.7 included.
 constexpr double float_zero = 3e-5 * shear * (edge / cells) * (edge / cells);
 
 TEST(ElementForces, RestGivesNone) {
@@ -108,8 +112,8 @@ TEST(ElementForces, SumToZeroWithTheirMoments) {
   }
 }
 
-/// -dW/dx of the double-precision energy by central differences along a random direction: the error falls as h^2 down to the
-/// rounding of the single-precision forces.
+/// -dW/dx of the double-precision energy by central differences along a random direction: the error falls as h^2 down
+/// to the rounding of the single-precision forces.
 TEST(ElementForces, AreMinusTheGradientOfTheEnergy) {
   for (const auto& law : models::laws) {
     for (const bool fibres : {false, true}) {
@@ -120,7 +124,8 @@ TEST(ElementForces, AreMinusTheGradientOfTheEnergy) {
       std::mt19937 random(7);
       std::normal_distribution<double> normal;
       std::vector<Vec3> direction;
-      for (std::size_t i = 0; i < state.x.size(); ++i) direction.emplace_back(normal(random), normal(random), normal(random));
+      for (std::size_t i = 0; i < state.x.size(); ++i)
+        direction.emplace_back(normal(random), normal(random), normal(random));
       const auto f = element_forces(m, blocks, state.x);
       double slope = 0;
       for (std::size_t i = 0; i < direction.size(); ++i) slope -= f.at[i].dot(direction[i]);
@@ -128,10 +133,12 @@ TEST(ElementForces, AreMinusTheGradientOfTheEnergy) {
       const auto error = [&](double h) {
         State up = state, down = state;
         for (std::size_t i = 0; i < direction.size(); ++i) up.x[i] += h * direction[i], down.x[i] -= h * direction[i];
-        return std::abs((solve::stored_energy(m, blocks, up) - solve::stored_energy(m, blocks, down)) / (2 * h) - slope) / std::abs(slope);
+        return std::abs((solve::stored_energy(m, blocks, up) - solve::stored_energy(m, blocks, down)) / (2 * h) -
+                        slope) /
+               std::abs(slope);
       };
-      // Steps of 1.6 and 0.8 % of an edge: far above single-precision noise, so the order shows. Small strain without fibres is
-      // quadratic: no error to fall.
+      // Steps of 1.6 and 0.8 % of an edge: far above single-precision noise, so the order shows. Small strain without
+      // fibres is quadratic: no error to fall.
       const double coarse = error(4e-4), fine = error(2e-4);
       if (law.objective || fibres) {
         ASSERT_GT(coarse, 1e-3) << law.name;
@@ -150,7 +157,8 @@ struct Isa {
   bool here;
 };
 std::vector<Isa> instruction_sets() {
-  const bool has_avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  const bool has_avx512 =
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
   return {{"avx2", avx2::forces, avx2::volumes, __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")},
           {"avx512", avx512::forces, avx512::volumes, has_avx512}};
 }
@@ -232,12 +240,14 @@ TEST(Blocks, CoverEachElementOnce) {
             EXPECT_EQ(mesh.labels[batch.element[l]], run.region);
             if (batch.volume[l] <= 0) continue;
             ++seen[batch.element[l]], volume += double(batch.volume[l]);
-            for (int a = 0; a < 4; ++a) EXPECT_EQ(b.nodes[std::size_t(batch.node[a][l])], mesh.tets[batch.element[l]][a]);
+            for (int a = 0; a < 4; ++a)
+              EXPECT_EQ(b.nodes[std::size_t(batch.node[a][l])], mesh.tets[batch.element[l]][a]);
           }
         }
       }
     }
-    for (std::size_t e = 0; e < seen.size(); ++e) EXPECT_EQ(seen[e], e < stressed ? 1 : 0);  // rigid parts carry no stress
+    for (std::size_t e = 0; e < seen.size(); ++e)
+      EXPECT_EQ(seen[e], e < stressed ? 1 : 0);  // rigid parts carry no stress
     double total = 0;
     for (std::size_t e = 0; e < stressed; ++e) total += mesh::volume(mesh, e);
     EXPECT_NEAR(volume, total, 1e-5 * total);  // single precision
@@ -245,10 +255,12 @@ TEST(Blocks, CoverEachElementOnce) {
 }
 
 TEST(Blocks, MoreThanElements) {
-  const Model m = models::of(shapes::box({0, 0, 0}, {1, 1, 1}, 1, 1, 1), {models::soft(material::Law::neo_hooke, 1, 0.3)});
+  const Model m =
+      models::of(shapes::box({0, 0, 0}, {1, 1, 1}, 1, 1, 1), {models::soft(material::Law::neo_hooke, 1, 0.3)});
   std::size_t elements = 0;
   for (const auto& b : make_blocks(m, 16)) {
-    for (const auto& q : b.batches) elements += std::size_t(std::count_if(q.volume, q.volume + lanes, [](float v) { return v > 0; }));
+    for (const auto& q : b.batches)
+      elements += std::size_t(std::count_if(q.volume, q.volume + lanes, [](float v) { return v > 0; }));
   }
   EXPECT_EQ(elements, 6u);
 }

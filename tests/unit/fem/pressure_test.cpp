@@ -31,7 +31,8 @@ TEST(Pressure, FollowerOnAClosedSurfaceHasNoResultantAndNoMoment) {
   Vec3 moment = Vec3::Zero();
   double size = 0;
   for (std::size_t i = 0; i < x.size(); ++i) moment += x[i].cross(f[i]), size += f[i].norm();
-  // Double precision; the sum over facets of their areas closes exactly, the moment too because thirds are exact for a plane facet.
+  // Double precision; the sum over facets of their areas closes exactly, the moment too because thirds are exact for a
+  // plane facet.
   EXPECT_LT(total(f).norm(), 1e-13 * size);
   EXPECT_LT(moment.norm(), 1e-13 * size);
 }
@@ -46,7 +47,8 @@ TEST(Pressure, PushesInwards) {
 }
 
 TEST(Pressure, DirectedKeepsItsAxisOnly) {
-  // Half of a ball: the directed part is -p times the projected area, along the direction, whatever the surface's shape.
+  // Half of a ball: the directed part is -p times the projected area, along the direction, whatever the surface's
+  // shape.
   const auto mesh = shapes::ball(Vec3::Zero(), 1, 8);
   PressureLoad load;
   load.directed = true, load.direction = Vec3(0, 0, -1);

@@ -33,7 +33,7 @@ TEST(closed_form, uniaxial_compressible_neo_hooke) {
   const double l = 1.4, t = 0.9, J = l * t * t;
   const Mat3 P = first_piola(neo_hooke<double>(), bulk, Vec3(l, t, t).asDiagonal());
   // sigma = 2 C10 J^(-5/3) dev(B) + K (J - 1) I, P = J sigma F^-T.
-  const double deviatoric = shear * std::pow(J, -5.0 / 3.0) * (l * l - t * t), p = bulk * (J - 1);
+  const double deviatoric = shear * std::pow(J, -5.0 / 3.0) * (l * l - t * t), p = 0.5 * bulk * (J - 1 / J);
   EXPECT_NEAR(P(0, 0), J / l * (2.0 / 3.0 * deviatoric + p), 20 * rounding);
   EXPECT_NEAR(P(1, 1), J / t * (-1.0 / 3.0 * deviatoric + p), 20 * rounding);
 }

@@ -56,7 +56,7 @@ template <class Law>
 Mat3T<Float16> stress(const Law& law, const Mat3T<Float16>& f) {
   const Float16 strain = law.volume_strain(f);
   Mat3T<Float16> P;
-  law.first_piola(f, strain, volumetric_pressure(constant<Float16>(bulk), strain), P);
+  law.first_piola(f, strain, std::remove_cvref_t<decltype(law)>::volume_pressure(constant<Float16>(bulk), strain), P);
   return P;
 }
 

@@ -26,7 +26,8 @@ Vec3 momentum(const Masses& m, const fem::State& s, std::size_t first = 0) {
 fem::Model ball_and_box(bool fixed_box) {
   const auto box = shapes::box({-0.05, -0.05, -0.05}, {0.1, 0.1, 0.05}, 6, 6, 3, 0);
   auto m = models::of(shapes::join(box, shapes::ball({0.003, -0.002, 0.0315}, 0.03, 8, 1)),
-                      {models::soft(material::Law::neo_hooke, 2 * shear, 0.45), models::soft(material::Law::mooney_rivlin, shear, 0.45)});
+                      {models::soft(material::Law::neo_hooke, 2 * shear, 0.45),
+                       models::soft(material::Law::mooney_rivlin, shear, 0.45)});
   if (fixed_box) models::block(m, fem::all, [](const Vec3& X) { return X.z() < -0.0499; });
   m.contact_surfaces = {models::skin(m.mesh, "box", 0), models::skin(m.mesh, "ball", 1)};
   m.contact_pairs = {{0, 1, 0}};
@@ -68,8 +69,9 @@ TEST(Explicit, FreeFlightKeepsMomentumAndEnergy) {
     EXPECT_NEAR(o1.kinetic + o1.internal, energy, 0.01 * energy);
   }
   EXPECT_GT(wiggle, 0.02 * energy);  // the oscillation was there
-  EXPECT_LT((momentum(masses, s.state()) - p).norm(), 1e-6 * p.norm());  // 2000 steps of single-precision internal forces
-  EXPECT_LT((turning() - spin).norm(), 1e-3 * spin.norm());              // moments of forces rounded against x: see ElementForces
+  EXPECT_LT((momentum(masses, s.state()) - p).norm(),
+            1e-6 * p.norm());                                // 2000 steps of single-precision internal forces
+  EXPECT_LT((turning() - spin).norm(), 1e-3 * spin.norm());  // moments of forces rounded against x: see ElementForces
 }
 
 TEST(Explicit, ImpactKeepsMomentumAndOnlyTakesEnergy) {
@@ -85,8 +87,9 @@ TEST(Explicit, ImpactKeepsMomentumAndOnlyTakesEnergy) {
     s.advance_to(0.002 * k);
     const auto o1 = s.observe();
     const double now = o1.kinetic + o1.internal;
-    // Never more than at the start (leapfrog's half-step lag lets the sum waver by some 0.1 %). The normal of the smooth gap is
-    // not quite its gradient: 1.5 % of the energy that contact takes while the ball goes in, it returns while it comes out.
+    // Never more than at the start (leapfrog's half-step lag lets the sum waver by some 0.1 %). The normal of the
+    // smooth gap is not quite its gradient: 1.5 % of the energy that contact takes while the ball goes in, it returns
+    // while it comes out.
     EXPECT_LT(now, energy * (1 + 2e-3)) << s.state().time;
     EXPECT_LT(o1.contact_work, 1e-4 * energy) << s.state().time;
     EXPECT_LT(o1.contact_work, most_contact + 0.02 * energy) << s.state().time;
@@ -95,7 +98,8 @@ TEST(Explicit, ImpactKeepsMomentumAndOnlyTakesEnergy) {
     EXPECT_GT(o1.least_gap, -2e-4);
     most_contact = std::min(most_contact, o1.contact_work);
   }
-  std::printf("contact took %.2f %% of the energy, %.2f %% in the end\n", -100 * most_contact / energy, -100 * s.observe().contact_work / energy);
+  std::printf("contact took %.2f %% of the energy, %.2f %% in the end\n", -100 * most_contact / energy,
+              -100 * s.observe().contact_work / energy);
   EXPECT_LT((momentum(masses, s.state()) - p).norm(), 1e-6 * p.norm());
   double box_speed = s.state().v[0].z();
   for (std::size_t i = 0; i < 100; ++i) box_speed = std::min(box_speed, s.state().v[i].z());
@@ -189,7 +193,8 @@ TEST(Explicit, RestoreAtTheStartChangesNothing) {
 }
 
 TEST(Explicit, InversionNamesOrganAndElementAndKeepsTheLastGoodState) {
-  auto m = models::of(shapes::box({0, 0, 0}, {0.1, 0.1, 0.1}, 3, 3, 3), {models::soft(material::Law::neo_hooke, shear, 0.45)});
+  auto m = models::of(shapes::box({0, 0, 0}, {0.1, 0.1, 0.1}, 3, 3, 3),
+                      {models::soft(material::Law::neo_hooke, shear, 0.45)});
   m.regions[0].name = "cervix";
   fem::PressureLoad load;
   load.surface = models::facets(m.mesh, [](const Vec3& X) { return X.z() > 0.0999; });
@@ -212,7 +217,8 @@ TEST(Explicit, InversionNamesOrganAndElementAndKeepsTheLastGoodState) {
 }
 
 TEST(Explicit, NaNIsANumericalFailure) {
-  const auto m = models::of(shapes::box({0, 0, 0}, {0.1, 0.1, 0.1}, 3, 3, 3), {models::soft(material::Law::neo_hooke, shear, 0.45)});
+  const auto m = models::of(shapes::box({0, 0, 0}, {0.1, 0.1, 0.1}, 3, 3, 3),
+                            {models::soft(material::Law::neo_hooke, shear, 0.45)});
   Explicit s(m, models::real_time(0.1, 1e-4));
   models::set(s, [](fem::State& st) { st.v[5].x() = std::numeric_limits<double>::quiet_NaN(); });
   try {
@@ -236,7 +242,8 @@ TEST(Explicit, EnergyBalances) {
   for (int k = 1; k <= 8; ++k) {
     s.advance_to(0.5 * k);
     const auto o = s.observe();
-    const double there = o.kinetic + o.internal, came = start + o.external_work + o.contact_work - o.damping_work + o.active_work;
+    const double there = o.kinetic + o.internal,
+                 came = start + o.external_work + o.contact_work - o.damping_work + o.active_work;
     EXPECT_NEAR(there, came, 0.01 * (start + std::abs(o.external_work) + std::abs(o.active_work))) << s.state().time;
   }
   const auto o = s.observe();
@@ -247,7 +254,8 @@ TEST(Explicit, EnergyBalances) {
 
 TEST(Masses, StepIsSafeAndScalingIsLocal) {
   // One region, one flat layer of elements: only it gets heavier.
-  auto mesh = shapes::grid(4, 4, 4, [](const Vec3& u) -> Vec3 { return Vec3(u.x(), u.y(), u.z() < 0.9 ? u.z() : 0.755) * 0.1; });
+  auto mesh = shapes::grid(4, 4, 4,
+                           [](const Vec3& u) -> Vec3 { return Vec3(u.x(), u.y(), u.z() < 0.9 ? u.z() : 0.755) * 0.1; });
   const auto m = models::of(std::move(mesh), {models::soft(material::Law::neo_hooke, shear, 0.45)});
   const auto none = scaled_masses(m, 1e-9, 0.5);
   EXPECT_EQ(none.added_fraction, 0);
@@ -279,12 +287,14 @@ TEST(Masses, CriticalStepIsStable) {
     o.safety = 1;
     Explicit s(m, o);
     models::set(s, [](fem::State& st) {
-      for (std::size_t i = 0; i < st.v.size(); ++i) st.v[i] = 0.01 * Vec3(double(i % 3) - 1, double(i % 5) - 2, double(i % 7) - 3);
+      for (std::size_t i = 0; i < st.v.size(); ++i)
+        st.v[i] = 0.01 * Vec3(double(i % 3) - 1, double(i % 5) - 2, double(i % 7) - 3);
     });
     const double energy = s.observe().kinetic;
     s.advance_to(2000 * step);
     const auto o1 = s.observe();
-    EXPECT_LT(o1.kinetic + o1.internal, 1.5 * energy) << poisson;  // highest modes at the edge of stability waver, they do not grow
+    EXPECT_LT(o1.kinetic + o1.internal, 1.5 * energy)
+        << poisson;  // highest modes at the edge of stability waver, they do not grow
   }
 }
 

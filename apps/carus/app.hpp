@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace carus::app {
+
+/// Exit statuses, the contract of docs/guide/results.md.
+enum Status : int { done = 0, bad_input = 2, numerical_failure = 3, interrupted = 4 };
+
+/// Each adds its subcommand; when it is chosen, its work is done at parsing's end and `status` set.
+void add_run(CLI::App& app, int& status);
+void add_check(CLI::App& app, int& status);
+void add_anatomy(CLI::App& app, int& status);
+
+/// Names of build options that a subcommand needs, told the same way everywhere.
+[[noreturn]] void refuse_without_meshing(const std::string& subcommand);
+
+}  // namespace carus::app

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "carus/results/figures.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "carus/core/units.hpp"
+
+namespace carus::results {
+namespace {
+
+labour::Contractions paper() {
+  labour::Contractions c;
+  c.base = 10 * units::mmHg, c.amplitude = 50 * units::mmHg;
+  return c;
+}
+
+/// A head that goes 30 mm down in each contraction and comes 8 mm back in each rest; born when 180 mm down.
+observe::Table staircase() {
+  observe::Table t;
+  t.names = {"time_s", "head_x_mm", "head_y_mm", "head_z_mm", "head_travel_mm", "head_speed_mm_s", "skull_past_vulva_mm", "widest_station_mm",
+             "uterus_length_mm", "sacrum_angle_deg"};
+  const auto c = paper();
+  double z = 0, last = 0;
+  for (double time = 0; time <= 1920; time += 2) {
+    const double phase = std::fmod(time - c.first + c.period, c.period);
+    if (time > c.first) z += phase <= 60 && phase > 0 ? 2 * 30.0 / 60 : -2 * 8.0 / 180;
+    const double angle = 4 * std::exp(-std::pow((time - 700) / 150, 2)) + 3 * std::exp(-std::pow((time - 1500) / 150, 2)) + 0.5 * time / 1920;
+    t.rows.push_back({time, 0.01 * z, 0.3 * z, -z, z, (z - last) / 2, z - 180, z - 60, 230 - 0.8 * z, angle});
+    last = z;
+  }
+  return t;
+}
+
+TEST(Figures, ReadAStaircaseRightly) {
+  const auto f = figures_of(staircase(), paper());
+  ASSERT_TRUE(f.birth_time);
+  EXPECT_NEAR(*f.birth_time, 30 + 7 * 240 + 60 * (180 - 7 * 22.0) / 30, 2.5);  // 22 mm a period, the rest in the eighth contraction
+  EXPECT_EQ(f.contractions, 8);
+  EXPECT_NEAR(f.descent_at_peaks.at(0), 30, 1.1);
+  EXPECT_NEAR(f.descent_at_peaks.at(2), 74, 1.1);
+  ASSERT_EQ(f.recession.size(), 7u);
+  for (const double r : f.recession) EXPECT_NEAR(r, 8, 0.2);
+  EXPECT_NEAR(f.amplitude[2], 180, 1.1);
+  EXPECT_NEAR(f.speed.mean, 180 / *f.birth_time, 1e-3);
+  EXPECT_LT(f.speed.min, 0);
+  EXPECT_EQ(f.sacrum_peaks.size(), 2u);
+  EXPECT_NEAR(f.sacrum_end, 0.5, 0.05);
+  EXPECT_EQ(f.rests_before_spines, 2);
+  EXPECT_EQ(f.recessions_before_spines, 2);
+}
+
+TEST(Bands, SayWhatIsInsideAndWhatIsNot) {
+  const auto bands = bands_of(figures_of(staircase(), paper()), paper());
+  const auto inside = [&](const std::string& what) {
+    const auto it = std::find_if(bands.begin(), bands.end(), [&](const Band& b) { return b.what == what; });
+    EXPECT_NE(it, bands.end()) << what;
+    return it != bands.end() && it->inside;
+  };
+  EXPECT_TRUE(inside("contractions to birth"));
+  EXPECT_TRUE(inside("head displacement z"));
+  EXPECT_TRUE(inside("head displacement y"));
+  EXPECT_TRUE(inside("rests in which the head recedes"));
+  EXPECT_TRUE(inside("sacrum/coccyx angle, peaks"));
+  EXPECT_FALSE(inside("moulding, occipitofrontal"));  // was not measured
+  EXPECT_FALSE(inside("lateral uterine points"));
+}
+
+TEST(Figures, AnEmptyTableGivesNone) { EXPECT_FALSE(figures_of({}, paper()).birth_time); }
+
+}  // namespace
+}  // namespace carus::results
