@@ -27,8 +27,8 @@ struct AnatomyArguments {
 /// Measures come in SI; a key tells by its end what it is.
 std::pair<double, const char*> shown(const std::string& key, double v) {
   if (key.ends_with("angle") || key == "flexion" || key == "asynclitism") return {v / units::deg, "deg"};
-  if (key.ends_with("mass")) return {v, "kg"};
-  if (key.ends_with("volume")) return {v * 1e6, "ml"};
+  if (key.ends_with("_kg")) return {v, ""};
+  if (key.starts_with("volume_")) return {v * 1e6, "ml"};
   return {v / units::mm, "mm"};
 }
 
@@ -56,6 +56,28 @@ void print_quality(const anatomy::Anatomy& a) {
   }
 }
 
+/// Least distances that decide whether anything fits: between the bodies, and of soft tissue between the canal and each bone.
+void print_budget(const anatomy::Anatomy& a) {
+  const auto surface = [](const anatomy::Body& body, const std::string& name) {
+    for (const auto& s : body.surfaces) {
+      if (s.name == name) return s.triangles;
+    }
+    return mesh::Triangles{};
+  };
+  const auto line = [](const std::string& what, const mesh::TetMesh& ma, const mesh::Triangles& ta, const mesh::TetMesh& mb, const mesh::Triangles& tb) {
+    if (!ta.empty() && !tb.empty()) fmt::print("  {:<34}{:>8.2f} mm\n", what, mesh::least_gap(ma.nodes, ta, mb.nodes, tb) / units::mm);
+  };
+  const auto cavity = surface(a.abdomen, "cavity");
+  fmt::print("\nleast gaps and tissue at rest\n");
+  line("fetus to uterus", a.fetus.mesh, mesh::boundary(a.fetus.mesh), a.uterus.mesh, surface(a.uterus, "inner"));
+  line("uterus to the abdomen's cavity", a.uterus.mesh, surface(a.uterus, "outer"), a.abdomen.mesh, cavity);
+  for (const auto label : {anatomy::innominate_right, anatomy::innominate_left, anatomy::sacrum, anatomy::coccyx}) {
+    const auto bone = mesh::boundary(a.abdomen.mesh, [=](std::int32_t l) { return l == label; });
+    line(fmt::format("uterus to {}", anatomy::name_of(label)), a.uterus.mesh, surface(a.uterus, "outer"), a.abdomen.mesh, bone);
+    line(fmt::format("cavity to {} (0: bare)", anatomy::name_of(label)), a.abdomen.mesh, cavity, a.abdomen.mesh, bone);
+  }
+}
+
 int write_anatomy(const AnatomyArguments& args) {
   const auto s = scenario::load(args.scenario, args.overrides);
   std::filesystem::create_directories(args.out);
@@ -63,6 +85,7 @@ int write_anatomy(const AnatomyArguments& args) {
   const auto files = results::export_anatomy(a, args.out);
   print_measures(a);
   print_quality(a);
+  print_budget(a);
   for (const auto& w : a.warnings) fmt::print("warning: {}\n", w);
   fmt::print("{} files in {}\n", files.size(), args.out);
   return done;

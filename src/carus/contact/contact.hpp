@@ -19,10 +19,11 @@ struct Surface {
   std::vector<std::array<std::int32_t, 3>> local;  ///< triangles in local vertex indices
   std::vector<std::int32_t> around_begin, around;  ///< local vertex -> incident triangles (CSR)
   std::vector<std::uint8_t> on_border;             ///< local vertex lies on an open edge
+  std::vector<std::uint8_t> on_crease;             ///< local vertex of a sharp edge at rest: no smooth surface to stand for
   std::vector<Vec3> normal;                        ///< per local vertex, unit, kept up to date by Contact
   std::vector<Vec3> facet_normal;                  ///< per triangle, twice the area vector
 
-  Surface(std::string name, mesh::Triangles triangles);
+  Surface(std::string name, mesh::Triangles triangles, const std::vector<Vec3>& rest);
   void update_normals(const std::vector<Vec3>& x);
 };
 

@@ -148,7 +148,9 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
   }
   // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
   double sagitta = 0;
-  for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(v[k])]);
+  for (int k = 0; k < 3; ++k) {
+    if (!other.on_crease[std::size_t(v[k])]) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(v[k])]);
+  }
   const double gap = along - std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   if (gap > active_below || gap < -options_.max_depth) {
     probe.impulse = 0;

@@ -7,7 +7,7 @@
 
 namespace carus::contact {
 
-Surface::Surface(std::string surface_name, mesh::Triangles t)
+Surface::Surface(std::string surface_name, mesh::Triangles t, const std::vector<Vec3>& rest)
     : name(std::move(surface_name)), triangles(std::move(t)), nodes(mesh::nodes_of(triangles)) {
   local.resize(triangles.size());
   around_begin.assign(nodes.size() + 1, 0);
@@ -33,6 +33,14 @@ Surface::Surface(std::string surface_name, mesh::Triangles t)
   }
   normal.resize(nodes.size());
   facet_normal.resize(triangles.size());
+  update_normals(rest);
+  constexpr double cos_crease = 0.77;  // 40 degrees between a facet and the mean of its corner
+  on_crease.assign(nodes.size(), 0);
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    for (const auto v : local[i]) {
+      if (facet_normal[i].dot(normal[std::size_t(v)]) < cos_crease * facet_normal[i].norm()) on_crease[std::size_t(v)] = 1;
+    }
+  }
 }
 
 void Surface::update_normals(const std::vector<Vec3>& x) {

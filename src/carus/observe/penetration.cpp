@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "carus/core/parallel.hpp"
 #include "carus/observe/box_grid.hpp"
@@ -12,6 +13,7 @@ namespace carus::observe {
 namespace {
 
 constexpr double touching = 1e-9;      // [m] less is no penetration
+constexpr double crease = 0.643;        // cos 50°
 constexpr double most_sagitta = 0.001;  // [m] more is an edge, not a curved surface
 
 bool has(const auto& simplex, std::int32_t node) { return std::find(simplex.begin(), simplex.end(), node) != simplex.end(); }
@@ -40,15 +42,26 @@ double mean_diagonal(const std::vector<Box>& boxes) {
   return boxes.empty() ? 1.0 : std::max(sum / double(boxes.size()), 1e-9);
 }
 
-/// Area-weighted unit normals at the nodes of a closed surface, by node of the mesh.
-std::vector<Vec3> vertex_normals(const std::vector<Vec3>& x, const mesh::Triangles& triangles) {
-  std::vector<Vec3> normals(x.size(), Vec3::Zero());
-  for (const auto& t : triangles) {
-    const Vec3 area = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
-    for (const auto n : t) normals[n] += area;
+/// Twice the area along the outward normal [m^2].
+Vec3 area_of(const std::vector<Vec3>& x, const mesh::Triangle& t) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
+
+/// For every facet and corner, the facets that share the corner and lie within 50° of this one at rest.
+std::vector<std::array<std::vector<std::int32_t>, 3>> facets_round(const std::vector<Vec3>& rest, const mesh::Triangles& triangles) {
+  std::vector<std::vector<std::int32_t>> of_node(rest.size());
+  std::vector<Vec3> normal;
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    for (const auto n : triangles[f]) of_node[n].push_back(std::int32_t(f));
+    normal.push_back(area_of(rest, triangles[f]).normalized());
   }
-  for (Vec3& n : normals) n.normalize();
-  return normals;
+  std::vector<std::array<std::vector<std::int32_t>, 3>> round(triangles.size());
+  for (std::size_t f = 0; f < triangles.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const auto g : of_node[triangles[f][k]]) {
+        if (normal[g].dot(normal[f]) > crease) round[f][k].push_back(g);
+      }
+    }
+  }
+  return round;
 }
 
 }  // namespace
@@ -58,7 +71,7 @@ PenetrationCheck::PenetrationCheck(const fem::Model& model, double search) : sea
   for (const auto& region : model.regions) {
     const auto it = std::find_if(bodies_.begin(), bodies_.end(), [&](const Body& b) { return b.name == region.organ; });
     body_of_region.push_back(std::size_t(it - bodies_.begin()));
-    if (it == bodies_.end()) bodies_.push_back({region.organ, {}, {}});
+    if (it == bodies_.end()) bodies_.push_back({region.organ, {}, {}, {}});
   }
   for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) {
     const auto body = body_of_region[model.mesh.labels[e]];
@@ -67,6 +80,7 @@ PenetrationCheck::PenetrationCheck(const fem::Model& model, double search) : sea
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     bodies_[b].boundary = mesh::boundary(model.mesh, [&](std::int32_t label) { return body_of_region[label] == b; });
+    bodies_[b].round = facets_round(model.mesh.nodes, bodies_[b].boundary);
   }
   const auto add = [&](std::size_t result, std::size_t onto, const mesh::Triangles& from, bool self) {
     auto it = std::find_if(passes_.begin(), passes_.end(), [&](const Pass& p) { return p.result == result && p.onto == onto; });
@@ -91,37 +105,53 @@ PenetrationCheck::PenetrationCheck(const fem::Model& model, double search) : sea
   }
 }
 
-void PenetrationCheck::run(const std::vector<Vec3>& x, const Pass& pass, Penetration& out) const {
+double PenetrationCheck::sagitta(const std::vector<Vec3>& x, const Body& body, std::int32_t facet, const Vec3& w) {
+  const auto& t = body.boundary[facet];
+  const Vec3 foot = w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
+  double sum = 0;  // ½ Σ w_k (x_k - p)·n_k, positive where the surface is convex
+  for (int k = 0; k < 3; ++k) {
+    Vec3 normal = Vec3::Zero();
+    for (const auto f : body.round[facet][k]) normal += area_of(x, body.boundary[f]);
+    sum += 0.5 * w[k] * (x[t[k]] - foot).dot(normal.normalized());
+  }
+  return std::clamp(sum, -most_sagitta, most_sagitta);
+}
+
+/// A body's boxes where it is now, in grids.
+struct PenetrationCheck::Search {
+  std::vector<Box> facet_boxes, tet_boxes;
+  BoxGrid facet_grid, tet_grid;
+  Search(const std::vector<Vec3>& x, const Body& body)
+      : facet_boxes(boxes_of(x, body.boundary)), tet_boxes(boxes_of(x, body.tets)),
+        facet_grid(facet_boxes, mean_diagonal(facet_boxes)), tet_grid(tet_boxes, mean_diagonal(tet_boxes)) {}
+};
+
+void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const Pass& pass, Penetration& out) const {
   const Body& body = bodies_[pass.onto];
   const auto& triangles = body.boundary;
   const auto& tets = body.tets;
-  const auto facet_boxes = boxes_of(x, triangles), tet_boxes = boxes_of(x, tets);
-  const BoxGrid facet_grid(facet_boxes, mean_diagonal(facet_boxes)), tet_grid(tet_boxes, mean_diagonal(tet_boxes));
   constexpr double far = std::numeric_limits<double>::infinity();
-  const auto normals = vertex_normals(x, triangles);
 
   // Distance to the nearest facet within r, and the sagitta there; or infinity.
   const auto nearest = [&](std::int32_t node, double r) {
-    Gap found{far, 0};
+    double least = far;
+    std::int32_t facet = -1;
+    Vec3 weights = Vec3::Zero();
     const Vec3& p = x[node];
-    facet_grid.visit(Box(p.array() - r, p.array() + r), [&](std::int32_t f) {
+    onto.facet_grid.visit(Box(p.array() - r, p.array() + r), [&](std::int32_t f) {
       const auto& t = triangles[f];
-      if (facet_boxes[f].squaredExteriorDistance(p) > std::min(r * r, found.flat * found.flat) || has(t, node)) return;
+      if (onto.facet_boxes[f].squaredExteriorDistance(p) > std::min(r * r, least * least) || has(t, node)) return;
       const Vec3 w = mesh::closest_point_weights(p, x[t[0]], x[t[1]], x[t[2]]);
-      const Vec3 foot = w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
-      const double d = (p - foot).norm();
-      if (d > r || d >= found.flat) return;
-      double sagitta = 0;  // ½ Σ w_k (x_k - p)·n_k, positive where the surface is convex
-      for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[t[k]] - foot).dot(normals[t[k]]);
-      found = {d, std::clamp(sagitta, -most_sagitta, most_sagitta)};
+      const double d = (p - w[0] * x[t[0]] - w[1] * x[t[1]] - w[2] * x[t[2]]).norm();
+      if (d <= r && d < least) least = d, facet = f, weights = w;
     });
-    return found;
+    return facet < 0 ? Gap{far, 0} : Gap{least, sagitta(x, body, facet, weights)};
   };
   const auto gap = [&](std::int32_t node) -> Gap {
     const Vec3& p = x[node];
     bool in = false;
-    tet_grid.visit(Box(p, p), [&](std::int32_t e) {
-      in = in || (tet_boxes[e].contains(p) && !has(tets[e], node) && inside(p, x, tets[e]));
+    onto.tet_grid.visit(Box(p, p), [&](std::int32_t e) {
+      in = in || (onto.tet_boxes[e].contains(p) && !has(tets[e], node) && inside(p, x, tets[e]));
     });
     if (!in && pass.self) return {search_, search_};
     Gap found = nearest(node, search_);
@@ -147,7 +177,14 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Pass& pass, Penetra
 std::vector<Penetration> PenetrationCheck::check(const std::vector<Vec3>& x) const {
   std::vector<Penetration> result;
   for (const auto& [a, b] : joined_) result.push_back({bodies_[a].name, bodies_[b].name, search_, search_, -1, 0});
-  for (const auto& pass : passes_) run(x, pass, result[pass.result]);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    std::optional<Search> search;
+    for (const auto& pass : passes_) {
+      if (pass.onto != b) continue;
+      if (!search) search.emplace(x, bodies_[b]);
+      run(x, *search, pass, result[pass.result]);
+    }
+  }
   return result;
 }
 

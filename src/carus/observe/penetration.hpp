@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,8 @@ struct Penetration {
 /// neighbours means nothing.
 ///
 /// Flat facets of edge h cut a surface of radius R short by up to h²/6R, on either side. The smooth gap takes that off: the distance to
-/// the facet less ½ Σ w_k (x_k - p)·n_k at its nearest point p = Σ w_k x_k, n_k the normals at its corners, at most 1 mm.
+/// the facet less ½ Σ w_k (x_k - p)·n_k at its nearest point p = Σ w_k x_k, at most 1 mm. n_k is the normal at a corner, of those facets
+/// round it only that lie within 50° of this one at rest: rims stay rims.
 class PenetrationCheck {
  public:
   /// `search` [m]: gaps beyond it are not looked for.
@@ -35,6 +37,7 @@ class PenetrationCheck {
     std::string name;
     std::vector<mesh::Tet> tets;
     mesh::Triangles boundary;
+    std::vector<std::array<std::vector<std::int32_t>, 3>> round;  // per facet and corner: facets that share it, but not over a rim
   };
   struct Pass {
     std::size_t onto;                 // of bodies_
@@ -45,7 +48,9 @@ class PenetrationCheck {
   struct Gap {
     double flat, smooth;  // [m]
   };
-  void run(const std::vector<Vec3>& x, const Pass& pass, Penetration& out) const;
+  [[nodiscard]] static double sagitta(const std::vector<Vec3>& x, const Body& body, std::int32_t facet, const Vec3& weights);
+  struct Search;
+  void run(const std::vector<Vec3>& x, const Search& onto, const Pass& pass, Penetration& out) const;
 
   double search_;
   std::vector<Body> bodies_;

@@ -299,18 +299,22 @@ class Assembler {
     const Triangles coccyx = bone_surface("coccyx", [](std::int32_t l) { return l == anatomy::coccyx; });
     const Triangles bone = filtered(
         bone_surface("bone", [](std::int32_t l) { return is_bone(l) && l != anatomy::coccyx; }), coccyx, false);
-    const Triangles cavity = filtered(filtered(out_.surfaces.at("abdomen.cavity"), bone, false), coccyx, false);
+    Triangles cavity = filtered(filtered(out_.surfaces.at("abdomen.cavity"), bone, false), coccyx, false);
+    // The perineum round the vulva: the head slides over its edge.
+    if (const auto vulva = out_.surfaces.find("abdomen.vulva"); vulva != out_.surfaces.end()) {
+      const Triangles more = filtered(vulva->second, cavity, false);
+      cavity.insert(cavity.end(), more.begin(), more.end());
+    }
     const int skin = surface("skin", out_.surfaces.at("fetus.skin"));
-    const int inner = surface("uterus_inner", out_.surfaces.at("uterus.inner"));
-    const int outer = surface("uterus_outer", out_.surfaces.at("uterus.outer"));
-    const int whole = surface("uterus", shifted(mesh::boundary(a_.uterus.mesh), out_.bodies.at(a_.uterus.name)));
+    // Inside, outside and rim in one: which side a facet faces tells which body it can touch.
+    const int uterus = surface("uterus", shifted(mesh::boundary(a_.uterus.mesh), out_.bodies.at(a_.uterus.name)));
     const std::array hard{surface("cavity", cavity), surface("bone", bone), surface("coccyx", coccyx)};
     const auto pair = [&](int a, int b) {
       if (a >= 0 && b >= 0) model().contact_pairs.push_back({a, b, s_.contact.friction});
     };
-    pair(skin, inner);
-    for (const int other : hard) pair(outer, other);
-    pair(whole, whole);                              // the fundus folds behind the breech
+    pair(skin, uterus);
+    for (const int other : hard) pair(uterus, other);
+    pair(uterus, uterus);                            // the fundus folds behind the breech
     for (const int other : hard) pair(skin, other);  // below the vulva
   }
 

@@ -166,7 +166,7 @@ struct Explicit::Impl {
 
   void make_contact() {
     std::vector<contact::Surface> surfaces;
-    for (const auto& s : model.contact_surfaces) surfaces.emplace_back(s.name, s.triangles);
+    for (const auto& s : model.contact_surfaces) surfaces.emplace_back(s.name, s.triangles, model.mesh.nodes);
     std::vector<contact::Pair> pairs;
     for (const auto& p : model.contact_pairs) pairs.push_back({p.a, p.b, p.friction});
     std::vector<std::int16_t> hinge_of(state.x.size(), -1);

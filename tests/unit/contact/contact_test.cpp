@@ -20,8 +20,8 @@ struct Bodies {
 Bodies two(const mesh::TetMesh& a, const mesh::TetMesh& b) {
   Bodies out;
   out.mesh = shapes::join(a, b);
-  out.surfaces.emplace_back("a", mesh::boundary(out.mesh, [](int l) { return l == 0; }));
-  out.surfaces.emplace_back("b", mesh::boundary(out.mesh, [](int l) { return l == 1; }));
+  out.surfaces.emplace_back("a", mesh::boundary(out.mesh, [](int l) { return l == 0; }), out.mesh.nodes);
+  out.surfaces.emplace_back("b", mesh::boundary(out.mesh, [](int l) { return l == 1; }), out.mesh.nodes);
   return out;
 }
 
@@ -41,7 +41,7 @@ Bodies faces(const mesh::TetMesh& lower, const mesh::TetMesh& upper, double z_lo
       if (std::all_of(t.begin(), t.end(), [&](auto n) { return std::abs(b.mesh.nodes[n].z() - z) < 1e-9; }))
         flat.push_back(t);
     }
-    b.surfaces[std::size_t(label)] = Surface(label ? "b" : "a", flat);
+    b.surfaces[std::size_t(label)] = Surface(label ? "b" : "a", flat, b.mesh.nodes);
   }
   return b;
 }
@@ -163,8 +163,8 @@ TEST(Contact, OpenEdgeEndsTheSurface) {
   for (const auto& t : mesh::boundary(mesh, [](int l) { return l == 0; })) {
     if (std::all_of(t.begin(), t.end(), [&](auto n) { return mesh.nodes[n].z() > -1e-9; })) top.push_back(t);
   }
-  surfaces.emplace_back("plate", top);
-  surfaces.emplace_back("box", mesh::boundary(mesh, [](int l) { return l == 1; }));
+  surfaces.emplace_back("plate", top, mesh.nodes);
+  surfaces.emplace_back("box", mesh::boundary(mesh, [](int l) { return l == 1; }), mesh.nodes);
   Bodies b{mesh, surfaces};
   Options options;
   options.reach = 0.02;
