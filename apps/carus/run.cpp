@@ -81,6 +81,18 @@ int status_of(results::Outcome outcome) {
   std::abort();
 }
 
+/// What stops a run before it starts belongs in its log too.
+template <class F>
+auto logged(F&& f) {
+  try {
+    return f();
+  } catch (const std::exception& e) {
+    spdlog::default_logger()->sinks()[0]->log({"carus", spdlog::level::err, e.what()});
+    spdlog::default_logger()->flush();
+    throw;
+  }
+}
+
 int run(RunArguments a) {
   if (a.frames >= 0) a.overrides.push_back(fmt::format("output.frames={}", a.frames));
   if (a.threads > 0) a.overrides.push_back(fmt::format("numerics.threads={}", a.threads));
@@ -91,7 +103,7 @@ int run(RunArguments a) {
   spdlog::info("carus {} ({}): meshing", CARUS_VERSION, CARUS_COMMIT);
   const auto begin = std::chrono::steady_clock::now();
   const parallel::Threads threads(s.numerics.threads);
-  const auto anatomy = meshing::build(s.anatomy);
+  const auto anatomy = logged([&] { return meshing::build(s.anatomy); });
   for (const auto& w : anatomy.warnings) spdlog::warn("{}", w);
   const auto assembly = scenario::assemble(s, anatomy);
   const auto engine = results::make_engine(s, assembly.model);

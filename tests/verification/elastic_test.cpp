@@ -84,7 +84,7 @@ Uniform uniaxial(double stretch, double poisson) {
   double stress = 0;
   for (std::size_t e = 0; e < m.mesh.tets.size(); ++e)
     stress += models::neo_hooke_stress(m, e, s.state().x)(2, 2) / double(m.mesh.tets.size());
-  return {stress, 2 * G * std::pow(J, -5.0 / 3) * (stretch * stretch - lo * lo) / 3 + K * (J - 1)};
+  return {stress, 2 * G * std::pow(J, -5.0 / 3) * (stretch * stretch - lo * lo) / 3 + K / 2 * (J - 1 / J)};
 }
 
 TEST(Uniaxial, FollowsTheClosedForm) {

@@ -24,6 +24,7 @@ using namespace anatomy;
 /// 3).
 constexpr double bag_radius = 0.05;
 constexpr double altitude_of_edge = 0.25;   // what altitudes are raised to, of the edge
+constexpr double coccyx_size = 0.0095;      // [m]
 constexpr double least_clearance = 0.0007;  // between bodies, whatever the facets [m]
 double sagitta(double h) { return h * h / (6 * bag_radius); }
 
@@ -54,9 +55,12 @@ mesh::TetMesh mesh_abdomen(const Parameters& p, const Abdomen& solid, const Uter
   const auto soft_size = [&solid, s](const Vec3& x) {
     return std::min(s.abdomen_outer, s.abdomen_inner + 0.5 * std::max(solid.cavity(x) - 0.004, 0.0));
   };
-  // Bone away from the canal (wings, backs) may be coarser: nothing touches it.
-  const auto bone_size = [&pelvis, s](const Vec3& x) {
-    return s.bone * (1 + std::clamp(10 * pelvis.channel(x) - 0.12, 0.0, 0.4));
+  // Bone away from the canal (wings, backs) may be coarser: nothing touches it. The coccyx keeps its shape in any
+  // resolution.
+  const Vec3 tip = pelvis.landmarks().at("coccyx_tip");
+  const auto bone_size = [&pelvis, s, tip](const Vec3& x) {
+    const double h = s.bone * (1 + std::clamp(10 * pelvis.channel(x) - 0.12, 0.0, 0.4));
+    return std::min(h, coccyx_size + std::max((x - tip).norm() - 0.030, 0.0));
   };
   const double top = fetus.breech_z() + 0.12, bottom = -0.15;
   auto m = mesh_labelled_solid(
@@ -65,7 +69,7 @@ mesh::TetMesh mesh_abdomen(const Parameters& p, const Abdomen& solid, const Uter
                     std::int32_t b) { return b >= innominate_right ? bone_size(x) : soft_size(x); },
        // Closer than this would refine without end where surfaces meet in an edge; keep_clear sees to the gap.
        .distance = [=](const Vec3& x, std::int32_t,
-                       std::int32_t b) { return b >= innominate_right ? 0.12 * s.bone : 0.10 * soft_size(x); },
+                       std::int32_t b) { return b >= innominate_right ? 0.12 * bone_size(x) : 0.10 * soft_size(x); },
        .cell = [=](const Vec3& x,
                    std::int32_t label) { return label >= innominate_right ? 1.3 * s.bone : 1.3 * soft_size(x); },
        .seed_spacing = 0.004});

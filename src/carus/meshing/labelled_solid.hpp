@@ -25,7 +25,7 @@ struct Sizing {
   double sliver_bound_deg = 12;  ///< dihedral angle up to which exudation goes on
 };
 
-/// Conforming tetrahedra of a labelled solid by Delaunay refinement (CGAL Mesh_3), then perturbation and exudation of
+/// Conforming tetrahedra of a labelled solid by Delaunay refinement (CGAL Mesh_3), then exudation of
 /// slivers. The same input gives the same mesh bit for bit: nothing is random, nothing depends on time. Sequential;
 /// seconds to a minute. Throws InputError if the solid is empty within the sphere.
 mesh::TetMesh mesh_labelled_solid(const LabelFunction& solid, const Sphere& bounds, const Sizing& sizing);

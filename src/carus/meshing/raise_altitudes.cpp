@@ -14,8 +14,8 @@ namespace {
 constexpr double flat =
     0.94;  // cosine between a facet and the mean of the surface about a node that may slide in it (20 degrees)
 constexpr int passes = 8;
-constexpr double allowance = 0.25;  // of the target: how far a surface may be left, within what facets leave it anyway
-constexpr double slim = 0.12;       // smallest altitude over longest edge
+constexpr double allowance = 0.0004;  // how far a node may leave its surface [m]: within what facets leave it anyway
+constexpr double slim = 0.12;         // smallest altitude over longest edge
 
 enum class Freedom { fixed, slides, free };
 
@@ -115,7 +115,7 @@ void raise_altitudes(mesh::TetMesh& m, double target) {
         Vec3 chosen = start;
         for (const double step : {1.0, 0.5, 0.25, 0.1})
           for (const Vec3& d : directions) {
-            m.nodes[i] = allowed(nodes[i], first[i], start + step * target * d, allowance * target);
+            m.nodes[i] = allowed(nodes[i], first[i], start + step * target * d, allowance);
             if (const double w = worst(i); w > best + 1e-4) best = w, chosen = m.nodes[i];
           }
         m.nodes[i] = chosen;

@@ -14,6 +14,7 @@
 namespace carus::observe {
 namespace {
 
+constexpr double gap_search = 0.001;  // [m] as far out as the smooth surface may stand from its facets
 constexpr double per_mm = 1e3, per_deg = 180 / pi, per_ml = 1e6;
 
 /// What several measurements of one output share.
@@ -64,7 +65,7 @@ struct Observer::Impl {
   std::vector<Measure> measures;
 
   Impl(const fem::Model& m, Setup given)
-      : model(m), setup(std::move(given)), strain(m.mesh), penetration(m, setup.gap_search), skin(m.mesh.nodes, {}, {}, {}) {
+      : model(m), setup(std::move(given)), strain(m.mesh), penetration(m, gap_search), skin(m.mesh.nodes, {}, {}, {}) {
     check_setup();
     find_sets();
     find_frames();

@@ -23,7 +23,6 @@ struct Setup {
   std::function<double(const Vec3&)> canal_nearest;  ///< arc length along the birth canal's axis [m], grows towards the vulva
   std::function<Vec3(double)> canal_tangent;         ///< unit, towards the vulva
   labour::Contractions contractions;
-  double gap_search = 0.004;  ///< [m] gaps beyond it are not told apart
 };
 
 /// "occiput", "sinciput", "biparietal_right", "biparietal_left", "spine_right", "spine_left", "vulva_centre", "vulva_normal"

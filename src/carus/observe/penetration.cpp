@@ -140,7 +140,11 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
     const Vec3& p = x[node];
     onto.facet_grid.visit(Box(p.array() - r, p.array() + r), [&](std::int32_t f) {
       const auto& t = triangles[f];
-      if (onto.facet_boxes[f].squaredExteriorDistance(p) > std::min(r * r, least * least) || has(t, node)) return;
+      const double near2 = std::min(r * r, least * least);
+      if (onto.facet_boxes[f].squaredExteriorDistance(p) > near2) return;
+      const Vec3 area = area_of(x, t);  // the plane is nearer than the facet: most are ruled out by it
+      const double along = area.dot(p - x[t[0]]);
+      if (along * along > near2 * area.squaredNorm() || has(t, node)) return;
       const Vec3 w = mesh::closest_point_weights(p, x[t[0]], x[t[1]], x[t[2]]);
       const double d = (p - w[0] * x[t[0]] - w[1] * x[t[1]] - w[2] * x[t[2]]).norm();
       if (d <= r && d < least) least = d, facet = f, weights = w;

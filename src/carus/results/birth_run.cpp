@@ -244,7 +244,6 @@ observe::Setup observer_setup(const scenario::Scenario& s, const scenario::Assem
   setup.canal_nearest = [axis](const Vec3& x) { return axis.nearest(x); };
   setup.canal_tangent = [axis](double along) { return axis.tangent(along); };
   setup.contractions = s.loads.contractions;
-  setup.gap_search = std::max(s.contact.search, 0.001);
   return setup;
 }
 

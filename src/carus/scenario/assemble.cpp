@@ -243,7 +243,8 @@ class Assembler {
   /// The bed of the canal, by the area of its outer face at each node: along y behind the axis, along x all round.
   void canal_bed() {
     const auto outer = out_.surfaces.find("uterus.outer");
-    if (outer == out_.surfaces.end()) return;
+    const double posterior = s_.attachments.bed_posterior, lateral = s_.attachments.bed_lateral;
+    if (outer == out_.surfaces.end() || (posterior == 0 && lateral == 0)) return;
     const std::vector<std::int32_t> canal = set_or_empty("uterus.vaginal_canal");
     std::map<std::int32_t, double> area;
     for (const std::int32_t n : canal) area[n] = 0;
@@ -258,7 +259,7 @@ class Assembler {
       const Vec3& x = model().mesh.nodes[node];
       const double s = axis.nearest(x);
       const bool behind = (x - axis.point(s)).dot(axis.tangent(s).cross(Vec3::UnitX())) < 0;
-      model().tethers.push_back({node, a * Vec3(s_.attachments.bed_lateral, behind ? s_.attachments.bed_posterior : 0, 0)});
+      model().tethers.push_back({node, a * Vec3(lateral, behind ? posterior : 0, 0)});
     }
   }
 

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program as its users run it: the coarse reference birth judged by bands (never by golden bits), bad input, interruption.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string reference = std::string(CARUS_SOURCE_DIR) + "/scenarios/reference.yaml";
+
+fs::path fresh(const std::string& name) {
+  const fs::path dir = fs::temp_directory_path() / ("carus_system_" + std::to_string(getpid())) / name;
+  fs::remove_all(dir);
+  fs::create_directories(dir.parent_path());
+  return dir;
+}
+
+pid_t start(std::vector<std::string> arguments, const fs::path& log) {
+  arguments.insert(arguments.begin(), CARUS_BINARY);
+  const pid_t child = fork();
+  if (child != 0) return child;
+  if (!std::freopen(log.c_str(), "w", stdout) || dup2(fileno(stdout), STDERR_FILENO) < 0) _exit(127);
+  std::vector<char*> argv;
+  for (auto& a : arguments) argv.push_back(a.data());
+  argv.push_back(nullptr);
+  execv(argv[0], argv.data());
+  _exit(127);
+}
+
+int wait_for(pid_t child) {
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+std::string text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return out.str();
+}
+
+std::vector<std::string> short_labour(const fs::path& out) {
+  return {"run", reference, "--out", out.string(), "--set", "resolution=coarse", "--set", "numerics.labour_duration=90 s",
+          "--set", "numerics.pseudo_duration=0.09375 s", "--frames", "15"};
+}
+
+TEST(Birth, CoarseReferenceMeetsItsBands) {
+  const fs::path out = fresh("birth");
+  ASSERT_EQ(wait_for(start({"run", reference, "--out", out.string(), "--set", "resolution=coarse", "--frames", "25"}, out.string() + ".log")), 0)
+      << text(out.string() + ".log");
+  const auto s = nlohmann::json::parse(text(out / "summary.json"));
+  std::printf("%s\n", s.dump().substr(0, 1500).c_str());
+  // The bands of the reference's judgement (docs/guide/results.md), 10 % wider where facets of 14 mm measure.
+  EXPECT_EQ(s.at("outcome"), "born");
+  EXPECT_GE(s.at("contractions").get<int>(), 5);
+  EXPECT_LE(s.at("contractions").get<int>(), 11);
+  EXPECT_GT(s.at("birth_time_s").get<double>(), 900);
+  const auto& head = s.at("head_displacement_mm");
+  EXPECT_GT(head.at("z").get<double>(), 150);
+  EXPECT_LT(head.at("z").get<double>(), 240);
+  EXPECT_GT(head.at("y").get<double>(), 30);
+  EXPECT_LT(head.at("y").get<double>(), 95);
+  int recessions = 0;
+  for (const double r : s.at("recession_per_rest_mm")) recessions += r > 0;
+  EXPECT_GE(recessions, 3);
+  const auto& uterus = s.at("uterus_length_mm");
+  const double ratio = uterus.at("end").get<double>() / uterus.at("start").get<double>();
+  EXPECT_GT(ratio, 0.2);
+  EXPECT_LT(ratio, 0.5);
+  EXPECT_GT(s.at("levator_stretch_max").get<double>(), 1.8);
+  EXPECT_LT(s.at("levator_stretch_max").get<double>(), 4.0);
+  EXPECT_LT(s.at("skull_volume_change_max_percent").get<double>(), 1.0);
+  const auto& numerics = s.at("numerics");
+  EXPECT_EQ(numerics.at("inverted").get<int>(), 0);
+  EXPECT_LT(numerics.at("energy_balance_error").get<double>(), 0.02);
+  EXPECT_TRUE(fs::exists(out / "frames.pvd"));
+}
+
+TEST(CommandLine, RefusesBadInputWithStatus2) {
+  const fs::path out = fresh("bad");
+  const fs::path log = out.string() + ".log";
+  EXPECT_EQ(wait_for(start({"run", reference, "--out", out.string(), "--set", "canal.radius=46"}, log)), 2);
+  EXPECT_NE(text(log).find("canal.radius"), std::string::npos);
+  EXPECT_FALSE(fs::exists(out / "summary.json"));
+  EXPECT_EQ(wait_for(start({"check", "/nowhere/scenario.yaml"}, log)), 2);
+  EXPECT_NE(text(log).find("/nowhere/scenario.yaml"), std::string::npos);
+}
+
+TEST(CommandLine, InterruptedAndResumedIsTheSameBitForBit) {
+  const fs::path whole = fresh("whole"), parts = fresh("parts");
+  ASSERT_EQ(wait_for(start(short_labour(whole), whole.string() + ".log")), 0) << text(whole.string() + ".log");
+
+  const pid_t child = start(short_labour(parts), parts.string() + ".log");
+  const fs::path third = parts / "frames" / "frame_0003.vtu";
+  for (int i = 0; i < 1200 && !fs::exists(third); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  kill(child, SIGINT);
+  const int status = wait_for(child);
+  ASSERT_TRUE(status == 4 || status == 0) << status << text(parts.string() + ".log");  // 0: it was done first
+  auto again = short_labour(parts);
+  again.push_back("--resume");
+  ASSERT_EQ(wait_for(start(again, parts.string() + ".2.log")), 0) << text(parts.string() + ".2.log");
+  EXPECT_EQ(text(whole / "curves.csv"), text(parts / "curves.csv"));
+}
+
+}  // namespace
