@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Purpose: cost of the explicit solver per element and step, on the block of the tests. The kernel alone (one thread), then
-// whole steps without contact on one and two threads. Goal: kernel with assembly <= 10 ns per element and step on one core.
-// Command: ./dev bench, or bench_elements; CARUS_ISA=portable|avx2|avx512 chooses the instruction set.
+// Purpose: cost of the explicit solver per element and step, on the block of the tests. The kernel alone (one thread),
+// then whole steps without contact on one and two threads. Goal: kernel with assembly <= 10 ns per element and step on
+// one core. Command: ./dev bench, or bench_elements; CARUS_ISA=portable|avx2|avx512 chooses the instruction set.
 #include <benchmark/benchmark.h>
 
 #include "carus/fem/element_block.hpp"
@@ -35,7 +35,8 @@ void kernel_forces(benchmark::State& state) {
   }
   for (auto _ : state) {
     for (auto& b : blocks) {
-      const auto report = fem::kernel().forces(b.batches.data(), b.batches.size(), material, b.x.data(), b.f.data(), nullptr, nullptr);
+      const auto report =
+          fem::kernel().forces(b.batches.data(), b.batches.size(), material, b.x.data(), b.f.data(), nullptr, nullptr);
       benchmark::DoNotOptimize(report);
     }
   }
@@ -50,15 +51,24 @@ BENCHMARK(kernel_forces)->Unit(benchmark::kMicrosecond);
 void whole_step(benchmark::State& state) {
   const fem::Model model = block(state.range(1) != 0);
   solve::ExplicitOptions options;
-  options.labour_duration = options.pseudo_duration = 10, options.time_step = 1e-5, options.threads = int(state.range(0));
+  options.labour_duration = options.pseudo_duration = 10, options.time_step = 1e-5,
+  options.threads = int(state.range(0));
   solve::Explicit solver(model, options);
   const double chunk = 50;
   double t = 0;
   for (auto _ : state) solver.advance_to(t += chunk * options.time_step);
-  state.counters["per_element"] = benchmark::Counter(double(model.mesh.tets.size()) * chunk,
-                                                     benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+  state.counters["per_element"] =
+      benchmark::Counter(double(model.mesh.tets.size()) * chunk,
+                         benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.SetLabel(fem::kernel().name);
 }
-BENCHMARK(whole_step)->ArgNames({"threads", "nodal_pressure"})->Args({1, 0})->Args({2, 0})->Args({1, 1})->Args({2, 1})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(whole_step)
+    ->ArgNames({"threads", "nodal_pressure"})
+    ->Args({1, 0})
+    ->Args({2, 0})
+    ->Args({1, 1})
+    ->Args({2, 1})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace

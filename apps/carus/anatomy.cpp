@@ -11,7 +11,6 @@
 #include "carus/results/export.hpp"
 #include "carus/scenario/scenario.hpp"
 #ifdef CARUS_WITH_MESHING
-#include "carus/meshing/build.hpp"
 #include "carus/meshing/quality_report.hpp"
 #endif
 
@@ -23,7 +22,6 @@ struct AnatomyArguments {
   std::vector<std::string> overrides;
 };
 
-#ifdef CARUS_WITH_MESHING
 /// Measures come in SI; a key tells by its end what it is.
 std::pair<double, const char*> shown(const std::string& key, double v) {
   if (key.ends_with("angle") || key == "flexion" || key == "asynclitism") return {v / units::deg, "deg"};
@@ -45,18 +43,26 @@ void print_measures(const anatomy::Anatomy& a) {
   }
 }
 
+#ifdef CARUS_WITH_MESHING
 void print_quality(const anatomy::Anatomy& a) {
-  fmt::print("\n{:<20}{:>8}{:>12}{:>10}{:>10}{:>12}{:>12}{:>10}\n", "", "tets", "volume ml", "min deg", "max deg", "altitude mm", "mean mm", "aspect");
+  fmt::print("\n{:<20}{:>8}{:>12}{:>10}{:>10}{:>12}{:>12}{:>10}\n", "", "tets", "volume ml", "min deg", "max deg",
+             "altitude mm", "mean mm", "aspect");
   for (const auto* body : {&a.fetus, &a.uterus, &a.abdomen}) {
-    fmt::print("{}: {} nodes, {} on the surface\n", body->name, body->mesh.nodes.size(), mesh::nodes_of(mesh::boundary(body->mesh)).size());
+    fmt::print("{}: {} nodes, {} on the surface\n", body->name, body->mesh.nodes.size(),
+               mesh::nodes_of(mesh::boundary(body->mesh)).size());
     for (const auto& [label, q] : meshing::quality_report(body->mesh)) {
-      fmt::print("  {:<18}{:>8}{:>12.1f}{:>10.1f}{:>10.1f}{:>12.2f}{:>12.2f}{:>10.1f}\n", anatomy::name_of(label), q.tets, 1e6 * q.volume,
-                 q.min_dihedral_deg, q.max_dihedral_deg, 1e3 * q.min_altitude, 1e3 * q.mean_altitude, q.max_aspect);
+      fmt::print("  {:<18}{:>8}{:>12.1f}{:>10.1f}{:>10.1f}{:>12.2f}{:>12.2f}{:>10.1f}\n", anatomy::name_of(label),
+                 q.tets, 1e6 * q.volume, q.min_dihedral_deg, q.max_dihedral_deg, 1e3 * q.min_altitude,
+                 1e3 * q.mean_altitude, q.max_aspect);
     }
   }
 }
+#else
+void print_quality(const anatomy::Anatomy&) {}  // build_anatomy has refused
+#endif
 
-/// Least distances that decide whether anything fits: between the bodies, and of soft tissue between the canal and each bone.
+/// Least distances that decide whether anything fits: between the bodies, and of soft tissue between the canal and each
+/// bone.
 void print_budget(const anatomy::Anatomy& a) {
   const auto surface = [](const anatomy::Body& body, const std::string& name) {
     for (const auto& s : body.surfaces) {
@@ -64,8 +70,10 @@ void print_budget(const anatomy::Anatomy& a) {
     }
     return mesh::Triangles{};
   };
-  const auto line = [](const std::string& what, const mesh::TetMesh& ma, const mesh::Triangles& ta, const mesh::TetMesh& mb, const mesh::Triangles& tb) {
-    if (!ta.empty() && !tb.empty()) fmt::print("  {:<34}{:>8.2f} mm\n", what, mesh::least_gap(ma.nodes, ta, mb.nodes, tb) / units::mm);
+  const auto line = [](const std::string& what, const mesh::TetMesh& ma, const mesh::Triangles& ta,
+                       const mesh::TetMesh& mb, const mesh::Triangles& tb) {
+    if (!ta.empty() && !tb.empty())
+      fmt::print("  {:<34}{:>8.2f} mm\n", what, mesh::least_gap(ma.nodes, ta, mb.nodes, tb) / units::mm);
   };
   const auto cavity = surface(a.abdomen, "cavity");
   fmt::print("\nleast gaps and tissue at rest\n");
@@ -73,7 +81,8 @@ void print_budget(const anatomy::Anatomy& a) {
   line("uterus to the abdomen's cavity", a.uterus.mesh, surface(a.uterus, "outer"), a.abdomen.mesh, cavity);
   for (const auto label : {anatomy::innominate_right, anatomy::innominate_left, anatomy::sacrum, anatomy::coccyx}) {
     const auto bone = mesh::boundary(a.abdomen.mesh, [=](std::int32_t l) { return l == label; });
-    line(fmt::format("uterus to {}", anatomy::name_of(label)), a.uterus.mesh, surface(a.uterus, "outer"), a.abdomen.mesh, bone);
+    line(fmt::format("uterus to {}", anatomy::name_of(label)), a.uterus.mesh, surface(a.uterus, "outer"),
+         a.abdomen.mesh, bone);
     line(fmt::format("cavity to {} (0: bare)", anatomy::name_of(label)), a.abdomen.mesh, cavity, a.abdomen.mesh, bone);
   }
 }
@@ -81,7 +90,7 @@ void print_budget(const anatomy::Anatomy& a) {
 int write_anatomy(const AnatomyArguments& args) {
   const auto s = scenario::load(args.scenario, args.overrides);
   std::filesystem::create_directories(args.out);
-  const auto a = meshing::build(s.anatomy);
+  const auto a = build_anatomy(s.anatomy);
   const auto files = results::export_anatomy(a, args.out);
   print_measures(a);
   print_quality(a);
@@ -90,19 +99,21 @@ int write_anatomy(const AnatomyArguments& args) {
   fmt::print("{} files in {}\n", files.size(), args.out);
   return done;
 }
-#else
-int write_anatomy(const AnatomyArguments&) { refuse_without_meshing("anatomy"); }
-#endif
 
 }  // namespace
 
 void add_anatomy(CLI::App& app, int& status) {
   auto a = std::make_shared<AnatomyArguments>();
-  auto* c = app.add_subcommand("anatomy", "Write the organs as STL and VTU with landmarks; print measures and mesh quality");
+  auto* c =
+      app.add_subcommand("anatomy", "Write the organs as STL and VTU with landmarks; print measures and mesh quality");
   c->add_option("SCENARIO", a->scenario, "Scenario file (YAML)")->required();
   c->add_option("--out", a->out, "Folder for the files")->required();
-  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")->expected(1)->take_all();
-  c->footer("Examples:\n  carus anatomy scenarios/reference.yaml --out out/anatomy\n  carus anatomy scenarios/reference.yaml --out out/op --set fetus.position=OP");
+  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")
+      ->expected(1)
+      ->take_all();
+  c->footer(
+      "Examples:\n  carus anatomy scenarios/reference.yaml --out out/anatomy\n  carus anatomy scenarios/reference.yaml "
+      "--out out/op --set fetus.position=OP");
   c->callback([a, &status] { status = write_anatomy(*a); });
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "carus/anatomy/anatomy.hpp"
+
 namespace carus::app {
 
 /// Exit statuses, the contract of docs/guide/results.md.
@@ -15,7 +17,7 @@ void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_anatomy(CLI::App& app, int& status);
 
-/// Names of build options that a subcommand needs, told the same way everywhere.
-[[noreturn]] void refuse_without_meshing(const std::string& subcommand);
+/// The reference anatomy; throws InputError naming the missing option in builds without meshing.
+anatomy::Anatomy build_anatomy(const anatomy::Parameters& parameters);
 
 }  // namespace carus::app

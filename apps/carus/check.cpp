@@ -4,9 +4,6 @@
 #include "app.hpp"
 #include "carus/core/error.hpp"
 #include "carus/scenario/assemble.hpp"
-#ifdef CARUS_WITH_MESHING
-#include "carus/meshing/build.hpp"
-#endif
 
 namespace carus::app {
 namespace {
@@ -14,8 +11,7 @@ namespace {
 int check(const std::string& file, const std::vector<std::string>& overrides) {
   const auto s = scenario::load(file, overrides);
   for (const auto& w : s.warnings) fmt::print("warning: {}\n", w);
-#ifdef CARUS_WITH_MESHING
-  const auto anatomy = meshing::build(s.anatomy);
+  const auto anatomy = build_anatomy(s.anatomy);
   for (const auto& w : anatomy.warnings) fmt::print("warning: {}\n", w);
   int errors = 0;
   for (const auto& finding : scenario::preflight(s, anatomy)) {
@@ -25,10 +21,6 @@ int check(const std::string& file, const std::vector<std::string>& overrides) {
   if (errors == 0) static_cast<void>(scenario::assemble(s, anatomy));
   fmt::print("{}: {}\n", file, errors ? fmt::format("refused, {} error{}", errors, errors > 1 ? "s" : "") : "ok");
   return errors ? bad_input : done;
-#else
-  fmt::print("note: the built model was not checked: this build has no meshing (CARUS_MESHING=OFF)\n{}: ok\n", file);
-  return done;
-#endif
 }
 
 }  // namespace
@@ -41,7 +33,9 @@ void add_check(CLI::App& app, int& status) {
   auto a = std::make_shared<Arguments>();
   auto* c = app.add_subcommand("check", "Check a scenario and the model built from it; lists all problems");
   c->add_option("SCENARIO", a->scenario, "Scenario file (YAML)")->required();
-  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")->expected(1)->take_all();
+  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")
+      ->expected(1)
+      ->take_all();
   c->footer("Examples:\n  carus check scenarios/reference.yaml\n  carus check my.yaml --set resolution=coarse");
   c->callback([a, &status] { status = check(a->scenario, a->overrides); });
 }

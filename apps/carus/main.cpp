@@ -5,11 +5,18 @@
 
 #include "app.hpp"
 #include "carus/core/error.hpp"
+#ifdef CARUS_WITH_MESHING
+#include "carus/meshing/build.hpp"
+#endif
 
 namespace carus::app {
 
-void refuse_without_meshing(const std::string& subcommand) {
-  throw InputError(fmt::format("carus {}: this build has no meshing (CARUS_MESHING=OFF); configure with -DCARUS_MESHING=ON", subcommand));
+anatomy::Anatomy build_anatomy([[maybe_unused]] const anatomy::Parameters& parameters) {
+#ifdef CARUS_WITH_MESHING
+  return meshing::build(parameters);
+#else
+  throw InputError("anatomy: this build has no meshing (CARUS_MESHING=OFF); configure with -DCARUS_MESHING=ON");
+#endif
 }
 
 }  // namespace carus::app

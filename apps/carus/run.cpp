@@ -17,9 +17,6 @@
 #include "carus/core/parallel.hpp"
 #include "carus/results/birth_run.hpp"
 #include "carus/scenario/assemble.hpp"
-#ifdef CARUS_WITH_MESHING
-#include "carus/meshing/build.hpp"
-#endif
 
 namespace carus::app {
 namespace {
@@ -43,8 +40,9 @@ class ProgressLine {
     if (!last && now - shown_ < (terminal_ ? std::chrono::milliseconds(200) : std::chrono::milliseconds(5000))) return;
     shown_ = now;
     const std::string left = std::isfinite(p.wall_left) ? fmt::format("{:.0f} s left", p.wall_left) : "";
-    fmt::print(stderr, "{}labour {:5.1f} of {:.1f} min  contraction {}  station {:+6.1f} mm  head z {:+7.1f} mm  {}{}", terminal_ ? "\r" : "",
-               p.time / 60, p.labour_duration / 60, p.contractions, p.station, p.head_z, left, terminal_ ? "   " : "\n");
+    fmt::print(stderr, "{}labour {:5.1f} of {:.1f} min  contraction {}  station {:+6.1f} mm  head z {:+7.1f} mm  {}{}",
+               terminal_ ? "\r" : "", p.time / 60, p.labour_duration / 60, p.contractions, p.station, p.head_z, left,
+               terminal_ ? "   " : "\n");
     open_ = terminal_;
   }
   ~ProgressLine() {
@@ -58,25 +56,31 @@ class ProgressLine {
 
 void open_log(const std::filesystem::path& out, bool resume) {
   auto file = std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "log.txt").string(), !resume);
-  auto logger = std::make_shared<spdlog::logger>("carus", spdlog::sinks_init_list{file, std::make_shared<spdlog::sinks::stderr_color_sink_mt>()});
+  auto logger = std::make_shared<spdlog::logger>(
+      "carus", spdlog::sinks_init_list{file, std::make_shared<spdlog::sinks::stderr_color_sink_mt>()});
   logger->sinks()[1]->set_pattern("%^%v%$");
   logger->flush_on(spdlog::level::info);
   spdlog::set_default_logger(logger);
 }
 
-#ifdef CARUS_WITH_MESHING
 void tell_plan(const scenario::Scenario& s, const fem::Model& model, const results::Engine::Facts& f) {
   spdlog::info("{}: {} elements, {} nodes", s.name, model.mesh.tets.size(), model.mesh.nodes.size());
-  spdlog::info("{} steps of {:.3g} s (unscaled critical step {:.3g} s, limited by {}; mass added {:.2f} %); 1 s of pseudo-time is {:.0f} s of labour",
-               f.steps, f.step.time_step, f.step.unscaled_critical_step, f.step.limiting_region, 100 * f.step.mass_scaled_fraction, f.labour_per_pseudo);
+  spdlog::info(
+      "{} steps of {:.3g} s (unscaled critical step {:.3g} s, limited by {}; mass added {:.2f} %); 1 s of pseudo-time "
+      "is {:.0f} s of labour",
+      f.steps, f.step.time_step, f.step.unscaled_critical_step, f.step.limiting_region,
+      100 * f.step.mass_scaled_fraction, f.labour_per_pseudo);
 }
 
 int status_of(results::Outcome outcome) {
   switch (outcome) {
     case results::Outcome::born:
-    case results::Outcome::not_born: return done;
-    case results::Outcome::failed: return numerical_failure;
-    case results::Outcome::interrupted: return interrupted;
+    case results::Outcome::not_born:
+      return done;
+    case results::Outcome::failed:
+      return numerical_failure;
+    case results::Outcome::interrupted:
+      return interrupted;
   }
   std::abort();
 }
@@ -103,7 +107,7 @@ int run(RunArguments a) {
   spdlog::info("carus {} ({}): meshing", CARUS_VERSION, CARUS_COMMIT);
   const auto begin = std::chrono::steady_clock::now();
   const parallel::Threads threads(s.numerics.threads);
-  const auto anatomy = logged([&] { return meshing::build(s.anatomy); });
+  const auto anatomy = logged([&] { return build_anatomy(s.anatomy); });
   for (const auto& w : anatomy.warnings) spdlog::warn("{}", w);
   const auto assembly = scenario::assemble(s, anatomy);
   const auto engine = results::make_engine(s, assembly.model);
@@ -123,9 +127,6 @@ int run(RunArguments a) {
   spdlog::info("{}; results in {}", words[int(outcome)], a.out);
   return status_of(outcome);
 }
-#else
-int run(const RunArguments&) { refuse_without_meshing("run"); }
-#endif
 
 }  // namespace
 
@@ -134,8 +135,11 @@ void add_run(CLI::App& app, int& status) {
   auto* c = app.add_subcommand("run", "Run a birth and write its results folder");
   c->add_option("SCENARIO", a->scenario, "Scenario file (YAML)")->required();
   c->add_option("--out", a->out, "Results folder; what an earlier run left in it is replaced")->required();
-  c->add_option("--threads", a->threads, "Threads; 0: all. The results do not depend on it")->check(CLI::Range(0, 1024));
-  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")->expected(1)->take_all();
+  c->add_option("--threads", a->threads, "Threads; 0: all. The results do not depend on it")
+      ->check(CLI::Range(0, 1024));
+  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")
+      ->expected(1)
+      ->take_all();
   c->add_option("--frames", a->frames, "Frames over the labour (output.frames)")->check(CLI::Range(0, 100000));
   c->add_flag("--resume", a->resume, "Go on from DIR/checkpoint.h5; same scenario and overrides");
   c->add_flag("--json-events", a->json_events, "Print each event as a line of JSON");

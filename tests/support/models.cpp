@@ -76,7 +76,8 @@ Mat3 neo_hooke_stress(const fem::Model& model, std::size_t tet, const std::vecto
   const double J = F.determinant();
   const Mat3 B = std::pow(J, -2.0 / 3.0) * F * F.transpose();
   // sigma = 2 C10/J dev(B) + K (J - 1) I
-  return 2 * m.c10 / J * (B - B.trace() / 3 * Mat3::Identity()) + 0.5 * m.bulk_modulus() * (J - 1 / J) * Mat3::Identity();
+  return 2 * m.c10 / J * (B - B.trace() / 3 * Mat3::Identity()) +
+         0.5 * m.bulk_modulus() * (J - 1 / J) * Mat3::Identity();
 }
 
 double wave_speed(const material::Material& m) {

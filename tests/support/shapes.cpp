@@ -17,7 +17,8 @@ mesh::TetMesh grid(int nx, int ny, int nz, const std::function<Vec3(const Vec3&)
     for (int j = 0; j <= ny; ++j) {
       for (int i = 0; i <= nx; ++i) {
         const Vec3 p = map(Vec3(double(i) / nx, double(j) / ny, double(k) / nz));
-        const std::array<std::int64_t, 3> key{std::llround(p.x() * 1e9), std::llround(p.y() * 1e9), std::llround(p.z() * 1e9)};
+        const std::array<std::int64_t, 3> key{std::llround(p.x() * 1e9), std::llround(p.y() * 1e9),
+                                              std::llround(p.z() * 1e9)};
         const auto [it, fresh] = seen.try_emplace(key, std::int32_t(m.nodes.size()));
         if (fresh) m.nodes.push_back(p);
         index.push_back(it->second);
@@ -46,31 +47,42 @@ mesh::TetMesh grid(int nx, int ny, int nz, const std::function<Vec3(const Vec3&)
 }
 
 mesh::TetMesh box(const Vec3& low, const Vec3& size, int nx, int ny, int nz, std::int32_t label) {
-  return grid(nx, ny, nz, [&](const Vec3& u) -> Vec3 { return low + u.cwiseProduct(size); }, label);
+  return grid(
+      nx, ny, nz, [&](const Vec3& u) -> Vec3 { return low + u.cwiseProduct(size); }, label);
 }
 
 mesh::TetMesh ball(const Vec3& centre, double r, int n, std::int32_t label) {
-  return grid(n, n, n, [&](const Vec3& u) -> Vec3 {
-    const Vec3 q = 2 * u - Vec3::Ones();
-    const double cube = q.cwiseAbs().maxCoeff(), sphere = q.norm();
-    return sphere > 0 ? Vec3(centre + r * cube / sphere * q) : centre;
-  }, label);
+  return grid(
+      n, n, n,
+      [&](const Vec3& u) -> Vec3 {
+        const Vec3 q = 2 * u - Vec3::Ones();
+        const double cube = q.cwiseAbs().maxCoeff(), sphere = q.norm();
+        return sphere > 0 ? Vec3(centre + r * cube / sphere * q) : centre;
+      },
+      label);
 }
 
-mesh::TetMesh tube(double r_inner, double r_outer, double z0, double z1, int n_radial, int n_around, int n_along, std::int32_t label) {
-  return grid(n_radial, n_around, n_along, [&](const Vec3& u) {
-    const double r = r_inner + u.x() * (r_outer - r_inner), a = 2 * pi * u.y();
-    return Vec3(r * std::cos(a), r * std::sin(a), z0 + u.z() * (z1 - z0));
-  }, label);
+mesh::TetMesh tube(double r_inner, double r_outer, double z0, double z1, int n_radial, int n_around, int n_along,
+                   std::int32_t label) {
+  return grid(
+      n_radial, n_around, n_along,
+      [&](const Vec3& u) {
+        const double r = r_inner + u.x() * (r_outer - r_inner), a = 2 * pi * u.y();
+        return Vec3(r * std::cos(a), r * std::sin(a), z0 + u.z() * (z1 - z0));
+      },
+      label);
 }
 
 mesh::TetMesh sphere_octant(double r_inner, double r_outer, int n_radial, int n_around, std::int32_t label) {
-  return grid(n_radial, n_around, n_around, [&](const Vec3& u) -> Vec3 {
-    // The triangle x + y + z = 1 blown up to the sphere; its corner at v = 1 closes.
-    const double v = u.y(), w = u.z();
-    const Vec3 flat((1 - v) * (1 - w), (1 - v) * w, v);
-    return (r_inner + u.x() * (r_outer - r_inner)) * flat.normalized();
-  }, label);
+  return grid(
+      n_radial, n_around, n_around,
+      [&](const Vec3& u) -> Vec3 {
+        // The triangle x + y + z = 1 blown up to the sphere; its corner at v = 1 closes.
+        const double v = u.y(), w = u.z();
+        const Vec3 flat((1 - v) * (1 - w), (1 - v) * w, v);
+        return (r_inner + u.x() * (r_outer - r_inner)) * flat.normalized();
+      },
+      label);
 }
 
 void shake(mesh::TetMesh& mesh, double amplitude) {

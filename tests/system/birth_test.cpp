@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The program as its users run it: the coarse reference birth judged by bands (never by golden bits), bad input, interruption.
+// The program as its users run it: the coarse reference birth judged by bands (never by golden bits), bad input,
+// interruption.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -54,13 +55,19 @@ std::string text(const fs::path& file) {
 }
 
 std::vector<std::string> short_labour(const fs::path& out) {
-  return {"run", reference, "--out", out.string(), "--set", "resolution=coarse", "--set", "numerics.labour_duration=90 s",
-          "--set", "numerics.pseudo_duration=0.09375 s", "--frames", "15"};
+  return {"run",      reference,
+          "--out",    out.string(),
+          "--set",    "resolution=coarse",
+          "--set",    "numerics.labour_duration=90 s",
+          "--set",    "numerics.pseudo_duration=0.09375 s",
+          "--frames", "15"};
 }
 
 TEST(Birth, CoarseReferenceMeetsItsBands) {
   const fs::path out = fresh("birth");
-  ASSERT_EQ(wait_for(start({"run", reference, "--out", out.string(), "--set", "resolution=coarse", "--frames", "25"}, out.string() + ".log")), 0)
+  ASSERT_EQ(wait_for(start({"run", reference, "--out", out.string(), "--set", "resolution=coarse", "--frames", "25"},
+                           out.string() + ".log")),
+            0)
       << text(out.string() + ".log");
   const auto s = nlohmann::json::parse(text(out / "summary.json"));
   std::printf("%s\n", s.dump().substr(0, 1500).c_str());

@@ -293,7 +293,7 @@ TEST(SelfContact, FoldingSheetDoesNotPass) {
               widest * 1e3, length * 500, force, deepest * 1e3, contact_gap * 1e3);
   EXPECT_LT(widest, 0.35 * length);  // it folded
   EXPECT_GT(force, 0.05);            // and presses on itself
-  EXPECT_GT(deepest, -2e-4);  // what a birth allows; the fold snaps through at 1 m/s
+  EXPECT_GT(deepest, -2e-4);         // what a birth allows; the fold snaps through at 1 m/s
 }
 
 }  // namespace

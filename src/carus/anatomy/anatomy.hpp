@@ -12,16 +12,27 @@ namespace carus::anatomy {
 /// Labels of the reference anatomy's solids. A body is a group of labels meshed together.
 enum Label : std::int32_t {
   outside = 0,
-  skull = 1, fetal_body = 2, fetal_skin = 3,                                                  // body "fetus"
-  uterine_fundus = 11, uterine_body = 12, lower_segment = 13, vaginal_canal = 14,             // body "uterus"
-  abdomen = 21, levator_ani = 22, perineal_body = 23,                                         // body "abdomen", with the bones
-  innominate_right = 31, innominate_left = 32, sacrum = 33, coccyx = 34,  // coccyx: the lower sacrum that can rock, with the coccyx
+  skull = 1,
+  fetal_body = 2,
+  fetal_skin = 3,  // body "fetus"
+  uterine_fundus = 11,
+  uterine_body = 12,
+  lower_segment = 13,
+  vaginal_canal = 14,  // body "uterus"
+  abdomen = 21,
+  levator_ani = 22,
+  perineal_body = 23,  // body "abdomen", with the bones
+  innominate_right = 31,
+  innominate_left = 32,
+  sacrum = 33,
+  coccyx = 34,  // coccyx: the lower sacrum that can rock, with the coccyx
 };
 const char* name_of(std::int32_t label);
 
 enum class Position { OA, LOA, LOT, LOP, OP, ROP, ROT, ROA };
 
-/// Defaults and sources: targets.md-derived, documented in schema/scenario.schema.json. Lengths in metres, angles in radians.
+/// Defaults and sources: targets.md-derived, documented in schema/scenario.schema.json. Lengths in metres, angles in
+/// radians.
 struct PelvisParameters {
   double obstetric_conjugate = 0.1217, transverse_inlet = 0.1295, interspinous = 0.1123, intertuberous = 0.1206;
   double sagittal_outlet = 0.1158, pubic_arch_angle = 1.5237, sacral_height = 0.098, sacral_depth = 0.018;
@@ -29,27 +40,27 @@ struct PelvisParameters {
   double spines_depth = 0.060;  ///< of the ischial spines below the inlet, along -z
 };
 struct CanalParameters {
-  double radius = 0.046;             ///< inner radius at full dilatation (calibrated)
-  double bend_radius = 0.080;        ///< radius of the axis' arc round the symphysis
-  double bend_start = -0.045;        ///< z at which the straight part ends
-  double bend_angle = 0.87;          ///< rad, where the canal ends at the vulva
+  double radius = 0.046;       ///< inner radius at full dilatation (calibrated)
+  double bend_radius = 0.080;  ///< radius of the axis' arc round the symphysis
+  double bend_start = -0.045;  ///< z at which the straight part ends
+  double bend_angle = 0.87;    ///< rad, where the canal ends at the vulva
 };
 struct UterusParameters {
   double wall_fundus = 0.0068, wall_body = 0.0060, wall_lower_segment = 0.0047, wall_canal = 0.0047;
-  double gap = 0.0008;               ///< to the fetus at the start
+  double gap = 0.0008;  ///< to the fetus at the start
 };
 struct AbdomenParameters {
-  double wall = 0.030;               ///< thickness of the trunk round the uterus
-  double gap = 0.0008;               ///< cavity to uterus at the start
+  double wall = 0.030;  ///< thickness of the trunk round the uterus
+  double gap = 0.0008;  ///< cavity to uterus at the start
   double levator_thickness = 0.006, hiatus_length = 0.060, perineal_body_thickness = 0.030;
 };
 struct FetusParameters {
   double biparietal = 0.0935, occipitofrontal = 0.116, suboccipitobregmatic = 0.095;
   double shoulder_width = 0.122, length = 0.300, skin_thickness = 0.005;
-  double flexion = 1.05;             ///< rad from the military attitude
-  double head_start = 0.040;         ///< z of the head's centre at the start
+  double flexion = 1.05;      ///< rad from the military attitude
+  double head_start = 0.040;  ///< z of the head's centre at the start
   Position position = Position::LOT;
-  double asynclitism = 0.0;          ///< rad
+  double asynclitism = 0.0;  ///< rad
 };
 struct MeshSize {
   double fetus, uterus, abdomen_inner, abdomen_outer, bone;  ///< facet edge [m]
@@ -63,13 +74,14 @@ struct Parameters {
   MeshSize mesh{};
 };
 
-/// Axis of the birth canal, from the fundus down: straight along -z, then an arc forward round the symphysis, then straight on.
+/// Axis of the birth canal, from the fundus down: straight along -z, then an arc forward round the symphysis, then
+/// straight on.
 class CanalAxis {
  public:
   explicit CanalAxis(const CanalParameters& p) : p_(p) {}
   /// s: arc length [m] from the inlet's centre downwards (negative above it).
   [[nodiscard]] Vec3 point(double s) const;
-  [[nodiscard]] Vec3 tangent(double s) const;  ///< unit, towards the vulva
+  [[nodiscard]] Vec3 tangent(double s) const;         ///< unit, towards the vulva
   [[nodiscard]] double nearest(const Vec3& x) const;  ///< s of the nearest point
   [[nodiscard]] double vulva() const { return -p_.bend_start + p_.bend_radius * p_.bend_angle; }
 
@@ -79,24 +91,25 @@ class CanalAxis {
 
 /// One body of tets with everything later stages may want to name on it.
 struct Body {
-  std::string name;                       ///< "fetus", "uterus", "abdomen"
+  std::string name;  ///< "fetus", "uterus", "abdomen"
   mesh::TetMesh mesh;
-  std::vector<mesh::NamedNodes> nodes;    ///< e.g. "back", "thighs", "vulva", "vaginal_canal", "lower_uterus_tie"
-  std::vector<mesh::NamedSurface> surfaces;  ///< e.g. "skin", "inner", "outer", "cavity", "bone", "contraction", "push", "tone"
+  std::vector<mesh::NamedNodes> nodes;  ///< e.g. "back", "thighs", "vulva", "vaginal_canal", "lower_uterus_tie"
+  std::vector<mesh::NamedSurface>
+      surfaces;  ///< e.g. "skin", "inner", "outer", "cavity", "bone", "contraction", "push", "tone"
 };
 
 /// Local frame of the uterine wall at a point: the directions in which muscle retracts.
 struct WallFrame {
   Vec3 meridian, normal;  ///< unit; the hoop direction is normal x meridian
   double s;               ///< coordinate along the canal axis [m], the ring the point belongs to
-  double dome;            ///< 0 on the tube, 1 on the dome, where the meridian is singular and retraction isotropic in the plane
+  double dome;  ///< 0 on the tube, 1 on the dome, where the meridian is singular and retraction isotropic in the plane
 };
 
 struct Anatomy {
   Parameters parameters;
   Body fetus, uterus, abdomen;
-  std::map<std::string, Vec3> landmarks;   ///< see landmarks.hpp
-  std::vector<WallFrame> uterine_wall;     ///< one per tet of the uterus
+  std::map<std::string, Vec3> landmarks;              ///< see landmarks.hpp
+  std::vector<WallFrame> uterine_wall;                ///< one per tet of the uterus
   std::map<std::string, double> requested, measured;  ///< pelvimetry and biometry [m, rad], by the same keys
   std::vector<std::string> warnings;
 };

@@ -19,9 +19,9 @@ struct Surface {
   std::vector<std::array<std::int32_t, 3>> local;  ///< triangles in local vertex indices
   std::vector<std::int32_t> around_begin, around;  ///< local vertex -> incident triangles (CSR)
   std::vector<std::uint8_t> on_border;             ///< local vertex lies on an open edge
-  std::vector<std::uint8_t> on_crease;             ///< local vertex of a sharp edge at rest: no smooth surface to stand for
-  std::vector<Vec3> normal;                        ///< per local vertex, unit, kept up to date by Contact
-  std::vector<Vec3> facet_normal;                  ///< per triangle, twice the area vector
+  std::vector<std::uint8_t> on_crease;  ///< local vertex of a sharp edge at rest: no smooth surface to stand for
+  std::vector<Vec3> normal;             ///< per local vertex, unit, kept up to date by Contact
+  std::vector<Vec3> facet_normal;       ///< per triangle, twice the area vector
 
   Surface(std::string name, mesh::Triangles triangles, const std::vector<Vec3>& rest);
   void update_normals(const std::vector<Vec3>& x);
@@ -40,10 +40,10 @@ struct HingeBody {
 };
 
 struct Options {
-  double activation = 1e-4;   ///< [m] gap below which a pair always enters the solve
-  double reach = 0.010;       ///< [m] distance up to which pairs are looked for at a renewal
-  double correction_speed = 1;  ///< [m/s] at most, outward, where penetrated
-  double max_depth = 0.004;   ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
+  double activation = 1e-4;      ///< [m] gap below which a pair always enters the solve
+  double reach = 0.010;          ///< [m] distance up to which pairs are looked for at a renewal
+  double correction_speed = 1;   ///< [m/s] at most, outward, where penetrated
+  double max_depth = 0.004;      ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
   double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch itself
   double sagitta_limit = 1e-3;   ///< [m]
   int sweeps = 3;
@@ -66,14 +66,16 @@ struct Constraint {
   Vec3 slip;                       ///< tangential impulse [N s]
 };
 
-/// Frictionless or Coulomb contact between moving surfaces by impulses: find gaps, then projected Gauss-Seidel on velocities.
+/// Frictionless or Coulomb contact between moving surfaces by impulses: find gaps, then projected Gauss-Seidel on
+/// velocities.
 ///
-/// Order of calls in a step: `detect` with the positions at its start, `solve` on the predicted velocities. Deterministic and
-/// independent of the number of threads.
+/// Order of calls in a step: `detect` with the positions at its start, `solve` on the predicted velocities.
+/// Deterministic and independent of the number of threads.
 class Contact {
  public:
-  Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest, std::vector<Vec3> inverse_mass,
-          std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges, const Options& options);
+  Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest,
+          std::vector<Vec3> inverse_mass, std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges,
+          const Options& options);
 
   /// Finds the active constraints. `max_speed` bounds every nodal speed in this step [m/s].
   void detect(const std::vector<Vec3>& x, double dt, double max_speed);
@@ -87,8 +89,8 @@ class Contact {
   [[nodiscard]] std::int64_t renewals() const { return renewals_; }
   [[nodiscard]] double seconds_renewing() const { return seconds_renewing_; }
 
-  /// Forgets partners and normals: the next `detect` finds them anew. What follows then depends on positions, velocities and
-  /// warm-start impulses alone, so a checkpoint taken here continues bit for bit.
+  /// Forgets partners and normals: the next `detect` finds them anew. What follows then depends on positions,
+  /// velocities and warm-start impulses alone, so a checkpoint taken here continues bit for bit.
   void start_afresh() { travelled_ = 0, renewed_at_ = -1e30; }
   [[nodiscard]] std::vector<double> save() const;  ///< warm-start impulses, one per probe
   void load(const double* impulses);
@@ -108,14 +110,11 @@ class Contact {
     double wake = 0;  ///< sleeps until this much has been travelled
     double impulse = 0;
   };
-  struct Foot {
-    Vec3 w;
-    double distance2;
-  };
 
   void renew(const std::vector<Vec3>& x);
+  void update_normals(const std::vector<Vec3>& x);
   void renew_probe(Probe& probe, const std::vector<Vec3>& x) const;
-  void follow(Probe& probe, const std::vector<Vec3>& x) const;
+  Vec3 follow(Probe& probe, const std::vector<Vec3>& x) const;  ///< weights of the foot on the facet it ends at
   bool admissible(const Probe& probe, std::int32_t triangle) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c) const;
   void finish(Constraint& c, const std::vector<Vec3>& x) const;
@@ -129,6 +128,7 @@ class Contact {
   Options options_;
   std::vector<Pass> passes_;
   std::vector<Probe> probes_;
+  std::vector<std::uint8_t> moves_;  ///< per surface: some node of it can
   std::vector<TriangleGrid> grids_;  ///< per surface
   std::vector<std::vector<Constraint>> chunk_constraints_;
   std::vector<Constraint> constraints_;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -11,8 +12,8 @@ namespace carus::contact {
 namespace {
 
 constexpr std::size_t probe_chunk = 512;
-constexpr int normals_every = 8;     // steps: normals turn slowly against the step
-constexpr int renew_every = 400;     // steps at most, so that folds find their new partner
+constexpr int normals_every = 8;  // steps: normals turn slowly against the step
+constexpr int renew_every = 400;  // steps at most, so that folds find their new partner
 
 Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3& w) {
   return w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
@@ -43,6 +44,11 @@ Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const s
   for (const Pair& p : pairs_) {
     add(p.a, p.b, p.friction);
     if (p.a != p.b) add(p.b, p.a, p.friction);
+  }
+  for (const Surface& s : surfaces_) {
+    moves_.push_back(std::any_of(s.nodes.begin(), s.nodes.end(), [&](std::int32_t n) {
+      return hinge_of_node_[n] >= 0 || !inverse_mass_[n].isZero();
+    }));
   }
   chunk_constraints_.resize((probes_.size() + probe_chunk - 1) / probe_chunk);
 }
@@ -84,9 +90,10 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
 
 void Contact::renew(const std::vector<Vec3>& x) {
   const auto start = std::chrono::steady_clock::now();
-  for (Surface& s : surfaces_) s.update_normals(x);
+  const bool first = renewals_ == 0;
+  update_normals(x);
   parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
-    grids_[b].build(x, surfaces_[b].triangles, options_.reach);
+    if (first || moves_[b]) grids_[b].build(x, surfaces_[b].triangles, options_.reach);
   });
   parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
     for (std::size_t i = b; i < e; ++i) renew_probe(probes_[i], x);
@@ -97,8 +104,15 @@ void Contact::renew(const std::vector<Vec3>& x) {
   seconds_renewing_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Of what moves; a fixed bone has had its normals since the start.
+void Contact::update_normals(const std::vector<Vec3>& x) {
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    if (moves_[s]) surfaces_[s].update_normals(x);
+  }
+}
+
 /// Walks over the facets from the last one to the nearest.
-void Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
+Vec3 Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
   const Surface& other = surfaces_[passes_[probe.pass].facets];
   const Vec3& p = x[probe.node];
   const auto squared = [&](std::int32_t t, Vec3& w) {
@@ -109,7 +123,7 @@ void Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
   Vec3 w;
   double best = squared(probe.triangle, w);
   for (int hop = 0; hop < 4; ++hop) {
-    if (w.minCoeff() > 0) return;  // inside the facet: nothing nearer among its neighbours
+    if (w.minCoeff() > 0) break;  // inside the facet: nothing nearer among its neighbours
     const std::int32_t here = probe.triangle;
     for (int k = 0; k < 3; ++k) {
       if (w[k] <= 0) continue;  // only round the vertices that carry the foot
@@ -122,18 +136,18 @@ void Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
         if (d2 < best * (1 - 1e-12)) best = d2, probe.triangle = t;
       }
     }
-    if (probe.triangle == here) return;
+    if (probe.triangle == here) break;
     best = squared(probe.triangle, w);
   }
+  return w;
 }
 
 bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c) const {
   const Pass& pass = passes_[probe.pass];
   const Surface& other = surfaces_[pass.facets];
-  follow(probe, x);
+  const Vec3 w = follow(probe, x);
   const mesh::Triangle& f = other.triangles[probe.triangle];
   const auto& v = other.local[probe.triangle];
-  const Vec3 w = mesh::closest_point_weights(x[probe.node], x[f[0]], x[f[1]], x[f[2]]);
   const Vec3 foot = interpolate(x, f, w);
   const Vec3 d = x[probe.node] - foot;
   Vec3 n = w[0] * other.normal[v[0]] + w[1] * other.normal[v[1]] + w[2] * other.normal[v[2]];
@@ -149,7 +163,8 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
   // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
   double sagitta = 0;
   for (int k = 0; k < 3; ++k) {
-    if (!other.on_crease[std::size_t(v[k])]) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(v[k])]);
+    if (!other.on_crease[std::size_t(v[k])])
+      sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(v[k])]);
   }
   const double gap = along - std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   if (gap > active_below || gap < -options_.max_depth) {
@@ -183,12 +198,13 @@ void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {
 }
 
 void Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
-  // A probe that found nothing within reach, or chose its partner, is good until both sides have moved half of the reach left.
+  // A probe that found nothing within reach, or chose its partner, is good until both sides have moved half of the
+  // reach left.
   const double active_below = options_.activation + 2 * dt * max_speed;
   if (travelled_ - renewed_at_ > 0.5 * (options_.reach - active_below) - 1e-3 || steps_since_renewal_ >= renew_every) {
     renew(x);
   } else if (steps_since_renewal_ % normals_every == 0) {
-    for (Surface& s : surfaces_) s.update_normals(x);
+    update_normals(x);
   }
   ++steps_since_renewal_;
   parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t chunk) {

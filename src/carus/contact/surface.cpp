@@ -38,7 +38,8 @@ Surface::Surface(std::string surface_name, mesh::Triangles t, const std::vector<
   on_crease.assign(nodes.size(), 0);
   for (std::size_t i = 0; i < local.size(); ++i) {
     for (const auto v : local[i]) {
-      if (facet_normal[i].dot(normal[std::size_t(v)]) < cos_crease * facet_normal[i].norm()) on_crease[std::size_t(v)] = 1;
+      if (facet_normal[i].dot(normal[std::size_t(v)]) < cos_crease * facet_normal[i].norm())
+        on_crease[std::size_t(v)] = 1;
     }
   }
 }
@@ -53,7 +54,8 @@ void Surface::update_normals(const std::vector<Vec3>& x) {
   parallel::for_chunks(nodes.size(), 2048, [&](std::size_t b, std::size_t e, std::size_t) {
     for (std::size_t v = b; v < e; ++v) {
       Vec3 n = Vec3::Zero();
-      for (std::int32_t q = around_begin[v]; q < around_begin[v + 1]; ++q) n += facet_normal[std::size_t(around[std::size_t(q)])];
+      for (std::int32_t q = around_begin[v]; q < around_begin[v + 1]; ++q)
+        n += facet_normal[std::size_t(around[std::size_t(q)])];
       const double length = n.norm();
       if (length > 0) normal[v] = n / length;
     }

@@ -9,7 +9,8 @@
 
 namespace carus::contact {
 
-/// Uniform grid over the boxes of triangles, each widened by `reach`: the cell of a point lists every triangle within reach.
+/// Uniform grid over the boxes of triangles, each widened by `reach`: the cell of a point lists every triangle within
+/// reach.
 class TriangleGrid {
  public:
   /// Cost: a few tens of nanoseconds per triangle and cell it covers.

@@ -30,12 +30,12 @@ class NumericalFailure : public std::runtime_error {
 };
 
 /// A bug: stays on in release builds.
-#define CARUS_ASSERT(condition)                                                                    \
-  do {                                                                                             \
-    if (!(condition)) {                                                                            \
-      std::fprintf(stderr, "carus: bug: %s:%d: %s\n", __FILE__, __LINE__, #condition);             \
-      std::abort();                                                                                \
-    }                                                                                              \
+#define CARUS_ASSERT(condition)                                                        \
+  do {                                                                                 \
+    if (!(condition)) {                                                                \
+      std::fprintf(stderr, "carus: bug: %s:%d: %s\n", __FILE__, __LINE__, #condition); \
+      std::abort();                                                                    \
+    }                                                                                  \
   } while (false)
 
 }  // namespace carus

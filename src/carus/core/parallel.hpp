@@ -24,8 +24,8 @@ class Threads {
   std::unique_ptr<tbb::global_control> limit_;
 };
 
-/// Calls f(begin, end, chunk) over [0, n) in chunks of fixed size. Chunks do not depend on the number of threads, so sums
-/// taken per chunk and added in the order of chunks do not either.
+/// Calls f(begin, end, chunk) over [0, n) in chunks of fixed size. Chunks do not depend on the number of threads, so
+/// sums taken per chunk and added in the order of chunks do not either.
 template <class F>
 void for_chunks(std::size_t n, std::size_t chunk, F&& f) {
   const std::size_t chunks = (n + chunk - 1) / chunk;

@@ -6,7 +6,8 @@
 
 namespace carus {
 
-/// Frame: RAS in metres. x to the right, y anterior, z cranial; origin at the centre of the pelvic inlet. SI units throughout.
+/// Frame: RAS in metres. x to the right, y anterior, z cranial; origin at the centre of the pelvic inlet. SI units
+/// throughout.
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 

@@ -24,7 +24,8 @@ Vec3 centroid(const mesh::TetMesh& mesh, std::int32_t e) {
 }
 
 /// Recursive bisection along the longest side of the bounding box.
-void bisect(const mesh::TetMesh& mesh, const std::vector<Vec3>& centre, Elements elements, int parts, std::vector<Elements>& out) {
+void bisect(const mesh::TetMesh& mesh, const std::vector<Vec3>& centre, Elements elements, int parts,
+            std::vector<Elements>& out) {
   if (parts == 1) {
     out.push_back(std::move(elements));
     return;
@@ -34,14 +35,14 @@ void bisect(const mesh::TetMesh& mesh, const std::vector<Vec3>& centre, Elements
   int axis = 0;
   (hi - lo).maxCoeff(&axis);
   const auto mid = elements.begin() + std::ptrdiff_t(elements.size()) * (parts / 2) / parts;
-  std::nth_element(elements.begin(), mid, elements.end(), [&](auto a, auto b) {
-    return std::pair(centre[a][axis], a) < std::pair(centre[b][axis], b);
-  });
+  std::nth_element(elements.begin(), mid, elements.end(),
+                   [&](auto a, auto b) { return std::pair(centre[a][axis], a) < std::pair(centre[b][axis], b); });
   bisect(mesh, centre, Elements(elements.begin(), mid), parts / 2, out);
   bisect(mesh, centre, Elements(mid, elements.end()), parts - parts / 2, out);
 }
 
-void fill_lane(Batch& b, int lane, const Model& model, std::int32_t e, const std::vector<std::int32_t>& local, bool padding) {
+void fill_lane(Batch& b, int lane, const Model& model, std::int32_t e, const std::vector<std::int32_t>& local,
+               bool padding) {
   const Mat3 B = inverse_edges(model.mesh, std::size_t(e));
   for (int a = 0; a < 4; ++a) b.node[a][lane] = local[model.mesh.tets[e][a]];
   for (int i = 0; i < 3; ++i) {

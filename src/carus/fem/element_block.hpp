@@ -49,10 +49,10 @@ struct KernelReport {
   std::int32_t inverted = 0;
 };
 
-/// Adds the nodal forces -dW/dx of `n` batches to f. `pressure` (per local pressure node, or null) replaces dU/dJ by its
-/// nodal average. `history` has prony_terms entries per batch. No allocation; thread-safe over distinct f.
-using ElementForces = KernelReport (*)(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, Float4* f,
-                                       const float* pressure, BatchHistory* history);
+/// Adds the nodal forces -dW/dx of `n` batches to f. `pressure` (per local pressure node, or null) replaces dU/dJ by
+/// its nodal average. `history` has prony_terms entries per batch. No allocation; thread-safe over distinct f.
+using ElementForces = KernelReport (*)(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x,
+                                       Float4* f, const float* pressure, BatchHistory* history);
 /// Adds the current volume of each element, a quarter to each node.
 using ElementVolumes = void (*)(const Batch* batches, std::size_t n, const Float4* x, float* current);
 
@@ -64,8 +64,8 @@ struct Kernel {
 /// The fastest kernel that this processor runs; CARUS_ISA=portable|avx2|avx512 in the environment overrides.
 const Kernel& kernel();
 
-/// A spatially compact share of the elements with its own copy of its nodes. Blocks are fixed by the model alone, so results
-/// do not depend on the number of threads.
+/// A spatially compact share of the elements with its own copy of its nodes. Blocks are fixed by the model alone, so
+/// results do not depend on the number of threads.
 struct Block {
   struct Run {
     std::int32_t region;
@@ -78,7 +78,7 @@ struct Block {
   std::vector<std::size_t> history_begin;  ///< per run
   std::vector<Float4> x, f;
   std::vector<std::int32_t> pressure_begin;  ///< per run: first slot of its nodes in `pressure`, -1 where not averaged
-  std::vector<float> volume, pressure;       ///< average nodal pressure and what it is made from, see nodal_pressure.hpp
+  std::vector<float> volume, pressure;  ///< average nodal pressure and what it is made from, see nodal_pressure.hpp
 };
 
 /// Splits the elements that carry stress into `count` blocks by recursive bisection, then into batches of one region.

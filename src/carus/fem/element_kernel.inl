@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The element pass for one instruction set. Included by element_kernel_{portable,avx2,avx512}.cpp inside a namespace of their
-// own, so that no inline function of one instruction set can be picked by the linker for another.
+// The element pass for one instruction set. Included by element_kernel_{portable,avx2,avx512}.cpp inside a namespace of
+// their own, so that no inline function of one instruction set can be picked by the linker for another.
 
 using Lanes = material::Float16;
 using Tensor = material::Mat3T<Lanes>;
@@ -10,8 +10,8 @@ struct Nodal {
 };
 
 #ifdef __AVX512F__
-// Four loads of 16 bytes make a register of lanes l, l+4, l+8, l+12; a 4x4 transposition inside the 128-bit quarters then
-// leaves x, y and z in natural order.
+// Four loads of 16 bytes make a register of lanes l, l+4, l+8, l+12; a 4x4 transposition inside the 128-bit quarters
+// then leaves x, y and z in natural order.
 inline Nodal gather(const Float4* x, const std::int32_t* node) {
   const auto quad = [&](int l) {
     __m512 r = _mm512_castps128_ps512(_mm_load_ps(x[node[l]].v));
@@ -30,8 +30,8 @@ inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
   const __m512 x = (__m512)g.x, y = (__m512)g.y, z = (__m512)g.z, o = _mm512_setzero_ps();
   const __m512 xy = _mm512_unpacklo_ps(x, y), zo = _mm512_unpacklo_ps(z, o);
   const __m512 xy_h = _mm512_unpackhi_ps(x, y), zo_h = _mm512_unpackhi_ps(z, o);
-  const __m512 r[4] = {_mm512_shuffle_ps(xy, zo, 0x44), _mm512_shuffle_ps(xy, zo, 0xee), _mm512_shuffle_ps(xy_h, zo_h, 0x44),
-                       _mm512_shuffle_ps(xy_h, zo_h, 0xee)};
+  const __m512 r[4] = {_mm512_shuffle_ps(xy, zo, 0x44), _mm512_shuffle_ps(xy, zo, 0xee),
+                       _mm512_shuffle_ps(xy_h, zo_h, 0x44), _mm512_shuffle_ps(xy_h, zo_h, 0xee)};
   const auto add = [&](int lane, __m128 v) {
     float* p = f[node[lane]].v;
     _mm_store_ps(p, _mm_add_ps(_mm_load_ps(p), v));
@@ -50,7 +50,8 @@ inline Nodal gather(const Float4* x, const std::int32_t* node) {
     const float* p = x[node[l]].v;
     b[0][l] = p[0], b[1][l] = p[1], b[2][l] = p[2];
   }
-  return {*reinterpret_cast<const Lanes*>(b[0]), *reinterpret_cast<const Lanes*>(b[1]), *reinterpret_cast<const Lanes*>(b[2])};
+  return {*reinterpret_cast<const Lanes*>(b[0]), *reinterpret_cast<const Lanes*>(b[1]),
+          *reinterpret_cast<const Lanes*>(b[2])};
 }
 
 inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
@@ -83,7 +84,8 @@ inline void add_forces(const Batch& b, const Tensor& P, Float4* f) {
   const Lanes V = load(b.volume);
   Nodal sum{Lanes{}, Lanes{}, Lanes{}};
   for (int a = 1; a < 4; ++a) {
-    const Lanes B0 = load(b.B[3 * (a - 1)]) * V, B1 = load(b.B[3 * (a - 1) + 1]) * V, B2 = load(b.B[3 * (a - 1) + 2]) * V;
+    const Lanes B0 = load(b.B[3 * (a - 1)]) * V, B1 = load(b.B[3 * (a - 1) + 1]) * V,
+                B2 = load(b.B[3 * (a - 1) + 2]) * V;
     const Nodal g{-(P.m00 * B0 + P.m01 * B1 + P.m02 * B2), -(P.m10 * B0 + P.m11 * B1 + P.m12 * B2),
                   -(P.m20 * B0 + P.m21 * B1 + P.m22 * B2)};
     scatter_add(f, b.node[a], g);
@@ -96,7 +98,8 @@ inline Lanes all(float v) { return Lanes{} + v; }
 
 inline Lanes nodal_mean(const float* p, const Batch& b) {
   Lanes s{};
-  for (int l = 0; l < lanes; ++l) s[l] = 0.25f * (p[b.node[0][l]] + p[b.node[1][l]] + p[b.node[2][l]] + p[b.node[3][l]]);
+  for (int l = 0; l < lanes; ++l)
+    s[l] = 0.25f * (p[b.node[0][l]] + p[b.node[1][l]] + p[b.node[2][l]] + p[b.node[3][l]]);
   return s;
 }
 
@@ -110,8 +113,10 @@ inline void store(const Stress& s, float (&rows)[6][lanes]) {
   for (int k = 0; k < 6; ++k) *reinterpret_cast<Lanes*>(rows[k]) = *from[k];
 }
 
-/// Maxwell branches on the isochoric second Piola-Kirchhoff stress; P holds the instantaneous isochoric stress and is relaxed.
-inline void relax(const Tensor& F, const Tensor& cof, const Lanes& J, const KernelMaterial& m, BatchHistory* history, Tensor& P) {
+/// Maxwell branches on the isochoric second Piola-Kirchhoff stress; P holds the instantaneous isochoric stress and is
+/// relaxed.
+inline void relax(const Tensor& F, const Tensor& cof, const Lanes& J, const KernelMaterial& m, BatchHistory* history,
+                  Tensor& P) {
   const Stress now = material::second_piola(cof, J, P);
   Stress S = now;
   for (int term = 0; term < m.prony_terms; ++term) {
@@ -124,8 +129,8 @@ inline void relax(const Tensor& F, const Tensor& cof, const Lanes& J, const Kern
 }
 
 template <bool fibres, bool prony, class Law>
-inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, Float4* f,
-                        const float* pressure, BatchHistory* history) {
+inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x,
+                        Float4* f, const float* pressure, BatchHistory* history) {
   KernelReport report;
   Lanes min_J = all(1e30f);
   for (std::size_t e = 0; e < n; ++e) {
@@ -140,7 +145,8 @@ inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, con
         Tensor along;
         const material::Vec3T<Lanes> a{load(b.fibre[0]), load(b.fibre[1]), load(b.fibre[2])};
         // Fibres measure the true volume, whatever the matrix does.
-        material::Fibre<Lanes>(all(m.k1), all(m.k2), a).first_piola(F, material::FiniteVolume<Lanes>::volume_strain(F), Lanes{}, along);
+        material::Fibre<Lanes>(all(m.k1), all(m.k2), a)
+            .first_piola(F, material::FiniteVolume<Lanes>::volume_strain(F), Lanes{}, along);
         P += along;
       }
       const Tensor cof = Law::volume_gradient(F);
@@ -165,8 +171,8 @@ inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, con
 }
 
 template <class Law>
-inline KernelReport choose(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x,
-                           Float4* f, const float* pressure, BatchHistory* history) {
+inline KernelReport choose(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m,
+                           const Float4* x, Float4* f, const float* pressure, BatchHistory* history) {
   if (m.fibres) {
     return m.prony_terms ? run<true, true>(law, batches, n, m, x, f, pressure, history)
                          : run<true, false>(law, batches, n, m, x, f, pressure, history);

@@ -16,7 +16,7 @@ struct Region {
   std::string name;   ///< e.g. "skull"
   std::string organ;  ///< the body it belongs to, e.g. "fetus"
   material::Material material;
-  bool rigid = false;  ///< rigid and fixed, or moved by a hinge: its elements carry no stress
+  bool rigid = false;   ///< rigid and fixed, or moved by a hinge: its elements carry no stress
   bool fibres = false;  ///< uses Model::fibre
 };
 
@@ -26,10 +26,10 @@ enum Blocked : std::uint8_t { none = 0, x = 1, y = 2, z = 4, all = 7 };
 struct Hinge {
   std::string name;
   std::vector<std::int32_t> nodes;
-  Vec3 point, axis;        ///< axis: unit
-  double stiffness;        ///< [N m/rad]
-  double damping;          ///< [N m s/rad], in labour time
-  double inertia;          ///< [kg m^2]
+  Vec3 point, axis;  ///< axis: unit
+  double stiffness;  ///< [N m/rad]
+  double damping;    ///< [N m s/rad], in labour time
+  double inertia;    ///< [kg m^2]
 };
 
 /// Nodes held to their rest position by springs, e.g. ligaments: force = -k (x - X) per node, by axis.
@@ -41,10 +41,10 @@ struct Tether {
 /// A pressure on a surface, by labour time.
 struct PressureLoad {
   std::string name;
-  mesh::Triangles surface;                     ///< outward oriented
-  std::function<double(double t)> pressure;    ///< [Pa], t in s of labour
-  bool directed = false;                       ///< false: follower -p n; true: only its part along `direction`
-  Vec3 direction = Vec3::Zero();               ///< unit, where the push goes
+  mesh::Triangles surface;                   ///< outward oriented
+  std::function<double(double t)> pressure;  ///< [Pa], t in s of labour
+  bool directed = false;                     ///< false: follower -p n; true: only its part along `direction`
+  Vec3 direction = Vec3::Zero();             ///< unit, where the push goes
 };
 
 /// One surface that can touch others; nodes and facets of one body.
@@ -53,8 +53,8 @@ struct ContactSurface {
   mesh::Triangles triangles;  ///< outward oriented
 };
 struct ContactPair {
-  int a, b;              ///< indices of surfaces; a == b: self-contact
-  double friction = 0;   ///< Coulomb coefficient
+  int a, b;             ///< indices of surfaces; a == b: self-contact
+  double friction = 0;  ///< Coulomb coefficient
 };
 
 /// Active shortening of a muscular wall: F = F_e F_a, det F_a = 1.
@@ -62,20 +62,20 @@ struct Retraction {
   enum class Kind { off, imposed, ratchet };
   Kind kind = Kind::off;
   std::vector<std::int32_t> elements;
-  std::vector<Vec3> meridian, normal;  ///< per element of `elements`, rest configuration
-  std::vector<double> dome;            ///< per element, 0..1: see anatomy::WallFrame
-  std::vector<double> s;               ///< per element [m]: rings of one rest length
-  std::vector<double> strength;        ///< per element, 0..1: how much of the retraction acts here
-  double ring_width = 0.02;            ///< [m] smoothing length of the rest length along s
-  double tau = 5;                      ///< [s of labour]
-  double floor = 0.2;                  ///< least rest length
-  std::function<double(double t)> imposed;  ///< rest length by labour time (imposed)
-  std::function<double(double t)> activity; ///< 0..1 by labour time (ratchet acts during contractions)
+  std::vector<Vec3> meridian, normal;        ///< per element of `elements`, rest configuration
+  std::vector<double> dome;                  ///< per element, 0..1: see anatomy::WallFrame
+  std::vector<double> s;                     ///< per element [m]: rings of one rest length
+  std::vector<double> strength;              ///< per element, 0..1: how much of the retraction acts here
+  double ring_width = 0.02;                  ///< [m] smoothing length of the rest length along s
+  double tau = 5;                            ///< [s of labour]
+  double floor = 0.2;                        ///< least rest length
+  std::function<double(double t)> imposed;   ///< rest length by labour time (imposed)
+  std::function<double(double t)> activity;  ///< 0..1 by labour time (ratchet acts during contractions)
 };
 
 /// Everything a solver needs. Knows nothing of files or births.
 struct Model {
-  mesh::TetMesh mesh;                 ///< all bodies; labels are indices into `regions`
+  mesh::TetMesh mesh;  ///< all bodies; labels are indices into `regions`
   std::vector<Region> regions;
   std::vector<std::uint8_t> blocked;  ///< per node, Blocked bits
   std::vector<Vec3> fibre;            ///< per element or empty
@@ -89,13 +89,13 @@ struct Model {
 
 /// The moving part of a solver. Doubles, one entry per node.
 struct State {
-  double time = 0;        ///< [s of labour]
+  double time = 0;  ///< [s of labour]
   std::int64_t step = 0;
-  std::vector<Vec3> x;    ///< current positions [m]
-  std::vector<Vec3> v;    ///< velocities [m/s of pseudo-time]
+  std::vector<Vec3> x;                          ///< current positions [m]
+  std::vector<Vec3> v;                          ///< velocities [m/s of pseudo-time]
   std::vector<double> hinge_angle, hinge_rate;  ///< [rad], [rad/s of pseudo-time]
   std::vector<double> rest_length;              ///< retraction, one per ring
-  std::vector<double> internal;                 ///< warm-start impulses, relaxation history, work sums: solver-private layout
+  std::vector<double> internal;  ///< warm-start impulses, relaxation history, work sums: solver-private layout
 };
 
 }  // namespace carus::fem

@@ -32,7 +32,8 @@ NodalPressure::NodalPressure(const Model& model, std::vector<Block>& blocks) {
         }
       }
       for (std::size_t n = 0; n < used.size(); ++n) {
-        if (used[n]) where[{run.region, block.nodes[n]}].push_back({std::int32_t(b), block.pressure_begin[r] + std::int32_t(n)});
+        if (used[n])
+          where[{run.region, block.nodes[n]}].push_back({std::int32_t(b), block.pressure_begin[r] + std::int32_t(n)});
       }
     }
     block.volume.resize(block.pressure.size());
@@ -40,7 +41,8 @@ NodalPressure::NodalPressure(const Model& model, std::vector<Block>& blocks) {
   for (const auto& [key, shares] : where) {
     const auto first = std::int32_t(shares_.size());
     shares_.insert(shares_.end(), shares.begin(), shares.end());
-    nodes_.push_back({float(model.regions[key.first].material.bulk_modulus()), float(rest.at(key)), first, std::int32_t(shares_.size())});
+    nodes_.push_back({float(model.regions[key.first].material.bulk_modulus()), float(rest.at(key)), first,
+                      std::int32_t(shares_.size())});
   }
   strain_.resize(nodes_.size());
 }
@@ -60,7 +62,8 @@ void NodalPressure::update(std::vector<Block>& blocks) const {
     for (std::size_t a = begin; a < end; ++a) {
       const Node& n = nodes_[a];
       float volume = 0;
-      for (auto s = n.first; s < n.last; ++s) volume += blocks[std::size_t(shares_[s].block)].volume[std::size_t(shares_[s].slot)];
+      for (auto s = n.first; s < n.last; ++s)
+        volume += blocks[std::size_t(shares_[s].block)].volume[std::size_t(shares_[s].slot)];
       strain_[a] = volume / n.rest_volume - 1;
       const float pressure = material::FiniteVolume<float>::volume_pressure(n.bulk, strain_[a]);
       for (auto s = n.first; s < n.last; ++s) {

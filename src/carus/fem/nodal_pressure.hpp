@@ -7,9 +7,9 @@
 
 namespace carus::fem {
 
-/// Average nodal pressure (Bonet and Burton 1998): linear tets do not lock near incompressibility when the volume ratio is that
-/// of the elements round a node, p_a = dU/dJ at J_a = sum V / sum V0, and an element takes the mean of its four. Averages are taken
-/// within one region, so that neighbours of unlike stiffness do not share a pressure.
+/// Average nodal pressure (Bonet and Burton 1998): linear tets do not lock near incompressibility when the volume ratio
+/// is that of the elements round a node, p_a = dU/dJ at J_a = sum V / sum V0, and an element takes the mean of its
+/// four. Averages are taken within one region, so that neighbours of unlike stiffness do not share a pressure.
 class NodalPressure {
  public:
   NodalPressure(const Model& model, std::vector<Block>& blocks);

@@ -40,7 +40,8 @@ double RestLength::mean() const {
   return volume > 0 ? sum / volume : 1;
 }
 
-/// Mean stretch per ring: |F m| on the tube; on the dome, where the meridian is singular, the root of the stretch of the area.
+/// Mean stretch per ring: |F m| on the tube; on the dome, where the meridian is singular, the root of the stretch of
+/// the area.
 void RestLength::measure(const std::vector<Vec3>& x) {
   const Retraction& r = model_->retraction;
   parallel::for_chunks(r.elements.size(), 1024, [&](std::size_t b, std::size_t e, std::size_t) {
@@ -59,7 +60,8 @@ void RestLength::measure(const std::vector<Vec3>& x) {
     stretch_[ring] += volume_[i] * share_[i].weight * element_stretch_[i];
     stretch_[ring + 1] += volume_[i] * (1 - share_[i].weight) * element_stretch_[i];
   }
-  for (std::size_t k = 0; k < stretch_.size(); ++k) stretch_[k] = ring_volume_[k] > 0 ? stretch_[k] / ring_volume_[k] : 1;
+  for (std::size_t k = 0; k < stretch_.size(); ++k)
+    stretch_[k] = ring_volume_[k] > 0 ? stretch_[k] / ring_volume_[k] : 1;
 }
 
 void RestLength::advance(const std::vector<Vec3>& x, double t, double dt) {

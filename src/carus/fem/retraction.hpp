@@ -7,14 +7,15 @@
 
 namespace carus::fem {
 
-/// The rest length of a retracting wall: one value per ring, hat functions along the wall's coordinate s, so that it belongs to
-/// a stretch of wall and not to an element and converges with the mesh.
+/// The rest length of a retracting wall: one value per ring, hat functions along the wall's coordinate s, so that it
+/// belongs to a stretch of wall and not to an element and converges with the mesh.
 class RestLength {
  public:
   explicit RestLength(const Model& model);
 
-  /// Moves the rest length on by dt [s of labour]. Ratchet: it follows the wall's mean meridional stretch per ring downwards while
-  /// the muscle is active, with time constant tau, never back, never below the floor. Imposed: as the timetable says.
+  /// Moves the rest length on by dt [s of labour]. Ratchet: it follows the wall's mean meridional stretch per ring
+  /// downwards while the muscle is active, with time constant tau, never back, never below the floor. Imposed: as the
+  /// timetable says.
   void advance(const std::vector<Vec3>& x, double t, double dt);
 
   [[nodiscard]] bool active() const { return model_->retraction.kind != Retraction::Kind::off; }

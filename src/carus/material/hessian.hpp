@@ -38,7 +38,8 @@ Mat3 first_piola_rate(const Law& law, double bulk, const Mat3& F, const Mat3& dF
   const auto f = to_tensor(F), df = to_tensor(dF);
   const auto n = law.volume_gradient(f);
   const double strain = law.volume_strain(f), p = Law::volume_pressure(bulk, strain);
-  return to_eigen(law.first_piola_rate(f, df) + n * (Law::volume_stiffness(bulk, strain) * contract(n, df)) + law.volume_gradient_rate(f, df) * p);
+  return to_eigen(law.first_piola_rate(f, df) + n * (Law::volume_stiffness(bulk, strain) * contract(n, df)) +
+                  law.volume_gradient_rate(f, df) * p);
 }
 
 /// dP_dF [Pa], symmetric.

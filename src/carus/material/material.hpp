@@ -15,8 +15,8 @@ struct PronyTerm {
   double tau;  ///< relaxation time [s of labour]
 };
 
-/// A material by value. Isochoric part by `law`; volumetric part K/4 (J^2 - 1 - 2 ln J) with K from `poisson` (small-strain
-/// equivalent).
+/// A material by value. Isochoric part by `law`; volumetric part K/4 (J^2 - 1 - 2 ln J) with K from `poisson`
+/// (small-strain equivalent).
 struct Material {
   Law law = Law::neo_hooke;
   double density = 1000;      ///< [kg/m^3]

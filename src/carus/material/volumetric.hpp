@@ -9,8 +9,8 @@ namespace carus::material {
 ///
 ///     U(J) = K/4 (J^2 - 1 - 2 ln J),  dU/dJ = K/2 (J - 1/J) = K e (1 + e/2)/(1 + e)      (Simo and Taylor 1991)
 ///
-/// U'' = K at rest, and the pressure grows without bound as J -> 0: soft tissue crushed against bone stiffens before it inverts,
-/// which K/2 (J - 1)^2 does not see to. bulk in Pa.
+/// U'' = K at rest, and the pressure grows without bound as J -> 0: soft tissue crushed against bone stiffens before it
+/// inverts, which K/2 (J - 1)^2 does not see to. bulk in Pa.
 template <class T>
 struct FiniteVolume {
   CARUS_INLINE static T volume_strain(const Mat3T<T>& F) { return determinant_minus_one(minus_identity(F)); }
@@ -22,8 +22,12 @@ struct FiniteVolume {
     return bulk * e * (Scalar<T>(1) + Scalar<T>(0.5) * e) / (Scalar<T>(1) + e);
   }
   /// U [J/m^3] and U'' [Pa]; double only.
-  CARUS_INLINE static T volume_energy(const T& bulk, const T& e) { return 0.25 * bulk * (2 * e + e * e - 2 * std::log1p(e)); }
-  CARUS_INLINE static T volume_stiffness(const T& bulk, const T& e) { return 0.5 * bulk * (1 + 1 / ((1 + e) * (1 + e))); }
+  CARUS_INLINE static T volume_energy(const T& bulk, const T& e) {
+    return 0.25 * bulk * (2 * e + e * e - 2 * std::log1p(e));
+  }
+  CARUS_INLINE static T volume_stiffness(const T& bulk, const T& e) {
+    return 0.5 * bulk * (1 + 1 / ((1 + e) * (1 + e)));
+  }
 };
 
 /// F^T F - I = H + H^T + H^T H, H = F - I, exact near rest.

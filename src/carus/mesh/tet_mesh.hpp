@@ -51,7 +51,8 @@ struct NamedSurface {
   Triangles triangles;
 };
 
-/// Least distance between two triangulated surfaces (nodes of each to facets of the other) [m], exact, O(n m) worst case.
+/// Least distance between two triangulated surfaces (nodes of each to facets of the other) [m], exact, O(n m) worst
+/// case.
 double least_gap(const std::vector<Vec3>& xa, const Triangles& a, const std::vector<Vec3>& xb, const Triangles& b);
 
 /// Closest point of triangle (a,b,c) to p: its barycentric weights.

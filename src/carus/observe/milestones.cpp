@@ -27,9 +27,10 @@ Values Table::column(const std::string& name) const {
 }
 
 std::vector<Milestone> milestones(const Table& table) {
-  constexpr std::array definitions{std::pair{"engagement", "widest_past_inlet_mm"}, std::pair{"spines", "station_mm"},
-                                   std::pair{"widest_at_spines", "widest_station_mm"}, std::pair{"crowning", "widest_past_vulva_mm"},
-                                   std::pair{"birth", "skull_past_vulva_mm"}, std::pair{"body_out", "fetus_past_vulva_mm"}};
+  constexpr std::array definitions{
+      std::pair{"engagement", "widest_past_inlet_mm"},    std::pair{"spines", "station_mm"},
+      std::pair{"widest_at_spines", "widest_station_mm"}, std::pair{"crowning", "widest_past_vulva_mm"},
+      std::pair{"birth", "skull_past_vulva_mm"},          std::pair{"body_out", "fetus_past_vulva_mm"}};
   std::vector<Milestone> found;
   const auto time = table.column("time_s");
   for (const auto& [name, column] : definitions) {

@@ -25,8 +25,9 @@ struct Milestone {
   std::size_t row;   ///< the first output after it
 };
 
-/// The first crossings so far, by time. Engagement: the head's widest plane passes the inlet; spines: its leading point passes the
-/// interspinous plane; crowning: its widest plane passes the vulva; birth: the last node of the skull has; body_out: of the fetus.
+/// The first crossings so far, by time. Engagement: the head's widest plane passes the inlet; spines: its leading point
+/// passes the interspinous plane; crowning: its widest plane passes the vulva; birth: the last node of the skull has;
+/// body_out: of the fetus.
 std::vector<Milestone> milestones(const Table& table);
 
 }  // namespace carus::observe

@@ -23,11 +23,11 @@ struct Moment {
   const solve::Observables& seen;
   const Values* previous;
   Pose head, trunk;
-  double s;       // of the head's centre along the canal [m]
-  Vec3 tangent;   // there
+  double s;      // of the head's centre along the canal [m]
+  Vec3 tangent;  // there
   Strain::Field strain;
   HeadSkin::Load skin;
-  double driving, axial;  // [N] contact on the fetus along the tangent: what pushes down, and the net
+  double driving, axial;          // [N] contact on the fetus along the tangent: what pushes down, and the net
   std::vector<Penetration> gaps;  // independent check, per pair of bodies
 };
 
@@ -41,7 +41,7 @@ double percentile(std::vector<double> v, double share) {
 }  // namespace
 
 const std::vector<std::string>& required_landmarks() {
-  static const std::vector<std::string> names{"occiput",    "sinciput",   "biparietal_right", "biparietal_left",
+  static const std::vector<std::string> names{"occiput",     "sinciput",   "biparietal_right", "biparietal_left",
                                               "spine_right", "spine_left", "vulva_centre",     "vulva_normal"};
   return names;
 }
@@ -57,7 +57,7 @@ struct Observer::Impl {
   std::vector<std::vector<std::int32_t>> region_tets;
   std::vector<double> region_volume;  // at rest [m^3]
   HeadAxes axes;                      // of the head at rest
-  Vec3 trunk_axis;                    // at rest: down the canal at the head, so that the attitude begins as the flexion to the canal
+  Vec3 trunk_axis;  // at rest: down the canal at the head, so that the attitude begins as the flexion to the canal
   Vec3 spines, spines_normal, vulva, vulva_normal;
   double s_start;
   HeadSkin skin;
@@ -82,7 +82,8 @@ struct Observer::Impl {
   void check_setup() const {
     std::vector<std::string> problems;
     for (const auto& name : required_landmarks()) {
-      if (!setup.landmarks.contains(name)) problems.push_back("anatomy: landmark " + name + ": missing; the measurements need it");
+      if (!setup.landmarks.contains(name))
+        problems.push_back("anatomy: landmark " + name + ": missing; the measurements need it");
     }
     for (const auto& [what, list] : {std::pair{"head", setup.head_regions}, {"trunk", setup.trunk_regions}}) {
       if (nodes_of(model, tets_of(model, list)).size() < 3) {
@@ -93,11 +94,14 @@ struct Observer::Impl {
   }
 
   void find_sets() {
-    const auto nodes = [&](const std::vector<std::string>& regions) { return nodes_of(model, tets_of(model, regions)); };
+    const auto nodes = [&](const std::vector<std::string>& regions) {
+      return nodes_of(model, tets_of(model, regions));
+    };
     fetus = nodes(setup.fetal_regions), skull = nodes(setup.head_regions), trunk = nodes(setup.trunk_regions);
     coccyx = nodes({"coccyx"});
     region_tets.resize(model.regions.size());
-    for (std::size_t e = 0; e < model.mesh.tets.size(); ++e) region_tets[model.mesh.labels[e]].push_back(std::int32_t(e));
+    for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
+      region_tets[model.mesh.labels[e]].push_back(std::int32_t(e));
     const auto& volume = strain.rest_volume();
     for (const auto& tets : region_tets) {
       double sum = 0;
@@ -142,13 +146,16 @@ struct Observer::Impl {
 
   void add_head() {
     add("time_s", [](const Moment& m) { return m.state.time; });
-    add("contractions_count", [c = setup.contractions](const Moment& m) { return double(labour::contractions_begun(c, m.state.time)); });
+    add("contractions_count",
+        [c = setup.contractions](const Moment& m) { return double(labour::contractions_begun(c, m.state.time)); });
     for (int k = 0; k < 3; ++k) {
-      add(std::string("head_") + "xyz"[k] + "_mm", [k](const Moment& m) { return per_mm * (m.head.centre - m.head.rest_centre)[k]; });
+      add(std::string("head_") + "xyz"[k] + "_mm",
+          [k](const Moment& m) { return per_mm * (m.head.centre - m.head.rest_centre)[k]; });
     }
     const auto travel = [this](const Moment& m) { return per_mm * (m.s - s_start); };
     add("head_travel_mm", travel);
-    add_rate("head_speed_mm_s", "head_z_mm", -1, [](const Moment& m) { return per_mm * (m.head.centre - m.head.rest_centre).z(); });
+    add_rate("head_speed_mm_s", "head_z_mm", -1,
+             [](const Moment& m) { return per_mm * (m.head.centre - m.head.rest_centre).z(); });
     add_rate("head_path_speed_mm_s", "head_travel_mm", 1, travel);
   }
 
@@ -158,8 +165,10 @@ struct Observer::Impl {
     add("widest_station_mm", [this](const Moment& m) { return per_mm * (m.head.centre - spines).dot(spines_normal); });
     add("widest_past_inlet_mm", [](const Moment& m) { return -per_mm * m.head.centre.z(); });
     add("widest_past_vulva_mm", [this](const Moment& m) { return per_mm * (m.head.centre - vulva).dot(vulva_normal); });
-    add("skull_past_vulva_mm", [this](const Moment& m) { return per_mm * least_height(m.state.x, skull, vulva, vulva_normal); });
-    add("fetus_past_vulva_mm", [this](const Moment& m) { return per_mm * least_height(m.state.x, fetus, vulva, vulva_normal); });
+    add("skull_past_vulva_mm",
+        [this](const Moment& m) { return per_mm * least_height(m.state.x, skull, vulva, vulva_normal); });
+    add("fetus_past_vulva_mm",
+        [this](const Moment& m) { return per_mm * least_height(m.state.x, fetus, vulva, vulva_normal); });
   }
 
   void add_attitude() {
@@ -178,19 +187,23 @@ struct Observer::Impl {
       return per_deg * unwrapped(attitude(axes.turned(m.trunk.rotation), tangent).rotation - start, 0);
     });
     for (int k = 0; k < 3; ++k) {
-      add(std::string("head_turn_") + "xyz"[k] + "_deg", [k](const Moment& m) { return per_deg * rotation_vector(m.head.rotation)[k]; });
+      add(std::string("head_turn_") + "xyz"[k] + "_deg",
+          [k](const Moment& m) { return per_deg * rotation_vector(m.head.rotation)[k]; });
     }
   }
 
   void add_shapes() {
-    const auto point = [&](const std::string& name) { return setup.nodes.contains(name) ? setup.nodes.at(name).front() : -1; };
+    const auto point = [&](const std::string& name) {
+      return setup.nodes.contains(name) ? setup.nodes.at(name).front() : -1;
+    };
     const auto fundus = point("point_fundus"), lower = point("point_lower");
     if (fundus >= 0 && lower >= 0) {
       add("uterus_length_mm", [=](const Moment& m) { return per_mm * (m.state.x[fundus] - m.state.x[lower]).norm(); });
     }
     for (const std::string name : {"point_left", "point_right"}) {
       if (const auto n = point(name); n >= 0) {
-        add("uterus_" + name.substr(6) + "_x_mm", [=, this](const Moment& m) { return per_mm * (m.state.x[n] - model.mesh.nodes[n]).x(); });
+        add("uterus_" + name.substr(6) + "_x_mm",
+            [=, this](const Moment& m) { return per_mm * (m.state.x[n] - model.mesh.nodes[n]).x(); });
       }
     }
     if (coccyx.size() >= 3) {  // backwards is positive: the tip, below the hinge, moves to -y
@@ -198,10 +211,12 @@ struct Observer::Impl {
         return -per_deg * rotation_vector(best_fit(model.mesh.nodes, m.state.x, coccyx).rotation).x();
       });
     }
-    for (const auto& [name, axis] : {std::pair{"occipitofrontal", axes.face}, {"biparietal", axes.right}, {"vertical", axes.vertex}}) {
+    for (const auto& [name, axis] :
+         {std::pair{"occipitofrontal", axes.face}, {"biparietal", axes.right}, {"vertical", axes.vertex}}) {
       const double rest = extent(model.mesh.nodes, skull, axis);
-      add(std::string("moulding_") + name + "_mm",
-          [=, this, a = axis](const Moment& m) { return per_mm * (extent(m.state.x, skull, m.head.rotation * a) - rest); });
+      add(std::string("moulding_") + name + "_mm", [=, this, a = axis](const Moment& m) {
+        return per_mm * (extent(m.state.x, skull, m.head.rotation * a) - rest);
+      });
     }
     for (std::size_t r = 0; r < model.regions.size(); ++r) {
       if (model.regions[r].rigid || region_tets[r].empty()) continue;
@@ -223,9 +238,8 @@ struct Observer::Impl {
 
   void add_loads() {
     for (std::size_t i = 0; i < model.pressures.size(); ++i) {
-      add("pressure_" + model.pressures[i].name + "_mmhg", [=](const Moment& m) {
-        return i < m.seen.pressures.size() ? m.seen.pressures[i] / units::mmHg : 0.0;
-      });
+      add("pressure_" + model.pressures[i].name + "_mmhg",
+          [=](const Moment& m) { return i < m.seen.pressures.size() ? m.seen.pressures[i] / units::mmHg : 0.0; });
     }
     add("expulsive_force_n", [](const Moment& m) { return m.driving; });
     add("axial_contact_force_n", [](const Moment& m) { return m.axial; });
@@ -236,7 +250,8 @@ struct Observer::Impl {
   }
 
   void add_tissue() {
-    for (const auto& [region, name] : {std::pair<std::string, std::string>{"levator_ani", "levator"}, {"perineal_body", "perineum"}}) {
+    for (const auto& [region, name] :
+         {std::pair<std::string, std::string>{"levator_ani", "levator"}, {"perineal_body", "perineum"}}) {
       const auto tets = tets_of(model, {region});
       if (tets.empty()) continue;
       const auto stretches = [=](const Moment& m) {
@@ -256,17 +271,23 @@ struct Observer::Impl {
     }
     if (const auto it = setup.nodes.find("vulva"); it != setup.nodes.end() && !it->second.empty()) {
       const double rest = extent(model.mesh.nodes, it->second, Vec3::UnitX());
-      add("vulva_transverse_ratio", [=, nodes = it->second](const Moment& m) { return extent(m.state.x, nodes, Vec3::UnitX()) / rest; });
+      add("vulva_transverse_ratio",
+          [=, nodes = it->second](const Moment& m) { return extent(m.state.x, nodes, Vec3::UnitX()) / rest; });
     }
   }
 
   void add_energies() {
     using O = solve::Observables;
-    for (const auto& [name, field] : {std::pair{"kinetic", &O::kinetic}, {"internal", &O::internal}, {"external_work", &O::external_work},
-                                      {"contact_work", &O::contact_work}, {"damping_work", &O::damping_work}, {"active_work", &O::active_work}}) {
+    for (const auto& [name, field] : {std::pair{"kinetic", &O::kinetic},
+                                      {"internal", &O::internal},
+                                      {"external_work", &O::external_work},
+                                      {"contact_work", &O::contact_work},
+                                      {"damping_work", &O::damping_work},
+                                      {"active_work", &O::active_work}}) {
       add(std::string("energy_") + name + "_j", [f = field](const Moment& m) { return m.seen.*f; });
     }
-    // What was put in, by loads, contact (what it takes counts negative) and muscle, less what damping took and what is there.
+    // What was put in, by loads, contact (what it takes counts negative) and muscle, less what damping took and what is
+    // there.
     add("energy_imbalance_j", [](const Moment& m) {
       const auto& o = m.seen;
       return o.external_work + o.contact_work + o.active_work - o.damping_work - o.kinetic - o.internal;
@@ -299,8 +320,18 @@ struct Observer::Impl {
 
   [[nodiscard]] Moment moment(const fem::State& state, const solve::Observables& seen, const Values* previous) const {
     const auto& rest = model.mesh.nodes;
-    Moment m{state, seen, previous, best_fit(rest, state.x, skull), best_fit(rest, state.x, trunk), 0, {}, strain.field(state.x),
-             skin.load(state.x, seen.contact_force), 0, 0, penetration.check(state.x)};
+    Moment m{state,
+             seen,
+             previous,
+             best_fit(rest, state.x, skull),
+             best_fit(rest, state.x, trunk),
+             0,
+             {},
+             strain.field(state.x),
+             skin.load(state.x, seen.contact_force),
+             0,
+             0,
+             penetration.check(state.x)};
     m.s = setup.canal_nearest(m.head.centre);
     m.tangent = setup.canal_tangent(m.s);
     if (!seen.contact_force.empty()) {
@@ -321,8 +352,12 @@ const std::vector<std::string>& Observer::names() const { return impl_->names; }
 std::size_t Observer::index(const std::string& name) const { return impl_->index(name); }
 const Strain& Observer::strain() const { return impl_->strain; }
 
-Pose Observer::head_pose(const fem::State& state) const { return best_fit(impl_->model.mesh.nodes, state.x, impl_->skull); }
-Pose Observer::trunk_pose(const fem::State& state) const { return best_fit(impl_->model.mesh.nodes, state.x, impl_->trunk); }
+Pose Observer::head_pose(const fem::State& state) const {
+  return best_fit(impl_->model.mesh.nodes, state.x, impl_->skull);
+}
+Pose Observer::trunk_pose(const fem::State& state) const {
+  return best_fit(impl_->model.mesh.nodes, state.x, impl_->trunk);
+}
 
 Values Observer::measure(const fem::State& state, const solve::Observables& seen, const Values* previous) const {
   const Moment m = impl_->moment(state, seen, previous);

@@ -17,21 +17,26 @@ namespace carus::observe {
 
 /// What the measurements must know of the anatomy, in the model's numbering and rest configuration.
 struct Setup {
-  std::map<std::string, Vec3> landmarks;  ///< [m] of the pelvis, the fetus' head and the vulva: see `required_landmarks`
-  std::map<std::string, std::vector<std::int32_t>> nodes;  ///< optional: "point_fundus", "point_lower", "point_left", "point_right", "vulva", "hiatus"
-  std::vector<std::string> fetal_regions, head_regions, trunk_regions;  ///< of the model; head_regions: bone, without the skin
-  std::function<double(const Vec3&)> canal_nearest;  ///< arc length along the birth canal's axis [m], grows towards the vulva
-  std::function<Vec3(double)> canal_tangent;         ///< unit, towards the vulva
+  std::map<std::string, Vec3>
+      landmarks;  ///< [m] of the pelvis, the fetus' head and the vulva: see `required_landmarks`
+  std::map<std::string, std::vector<std::int32_t>>
+      nodes;  ///< optional: "point_fundus", "point_lower", "point_left", "point_right", "vulva", "hiatus"
+  std::vector<std::string> fetal_regions, head_regions,
+      trunk_regions;  ///< of the model; head_regions: bone, without the skin
+  std::function<double(const Vec3&)>
+      canal_nearest;                          ///< arc length along the birth canal's axis [m], grows towards the vulva
+  std::function<Vec3(double)> canal_tangent;  ///< unit, towards the vulva
   labour::Contractions contractions;
 };
 
-/// "occiput", "sinciput", "biparietal_right", "biparietal_left", "spine_right", "spine_left", "vulva_centre", "vulva_normal"
+/// "occiput", "sinciput", "biparietal_right", "biparietal_left", "spine_right", "spine_left", "vulva_centre",
+/// "vulva_normal"
 const std::vector<std::string>& required_landmarks();
 
 using Values = std::vector<double>;
 
-/// Everything that is measured at an output, as a flat list of names (unit at the end of each) and values. Holds node sets and rest
-/// values; `measure` is a pure function of its arguments, independent of threads, about 1 µs per element.
+/// Everything that is measured at an output, as a flat list of names (unit at the end of each) and values. Holds node
+/// sets and rest values; `measure` is a pure function of its arguments, independent of threads, about 1 µs per element.
 class Observer {
  public:
   /// `model` must outlive the observer. Throws InputError naming the landmarks and regions that are missing.

@@ -12,19 +12,23 @@
 namespace carus::observe {
 namespace {
 
-constexpr double touching = 1e-9;      // [m] less is no penetration
+constexpr double touching = 1e-9;       // [m] less is no penetration
 constexpr double crease = 0.643;        // cos 50°
 constexpr double most_sagitta = 0.001;  // [m] more is an edge, not a curved surface
 
-bool has(const auto& simplex, std::int32_t node) { return std::find(simplex.begin(), simplex.end(), node) != simplex.end(); }
+bool has(const auto& simplex, std::int32_t node) {
+  return std::find(simplex.begin(), simplex.end(), node) != simplex.end();
+}
 
 /// All four sub-volumes of (p, tet) have the tet's sign. A point on a face counts, so that none slips between two tets.
 bool inside(const Vec3& p, const std::vector<Vec3>& x, const mesh::Tet& t) {
-  const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return (b - a).cross(c - a).dot(d - a); };
+  const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+    return (b - a).cross(c - a).dot(d - a);
+  };
   const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]], &d = x[t[3]];
   const double whole = volume(a, b, c, d), sign = whole < 0 ? -1 : 1, least = -1e-12 * std::abs(whole);
-  return sign * volume(p, b, c, d) >= least && sign * volume(a, p, c, d) >= least && sign * volume(a, b, p, d) >= least &&
-         sign * volume(a, b, c, p) >= least;
+  return sign * volume(p, b, c, d) >= least && sign * volume(a, p, c, d) >= least &&
+         sign * volume(a, b, p, d) >= least && sign * volume(a, b, c, p) >= least;
 }
 
 template <class Simplices>
@@ -43,10 +47,13 @@ double mean_diagonal(const std::vector<Box>& boxes) {
 }
 
 /// Twice the area along the outward normal [m^2].
-Vec3 area_of(const std::vector<Vec3>& x, const mesh::Triangle& t) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
+Vec3 area_of(const std::vector<Vec3>& x, const mesh::Triangle& t) {
+  return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+}
 
 /// For every facet and corner, the facets that share the corner and lie within 50° of this one at rest.
-std::vector<std::array<std::vector<std::int32_t>, 3>> facets_round(const std::vector<Vec3>& rest, const mesh::Triangles& triangles) {
+std::vector<std::array<std::vector<std::int32_t>, 3>> facets_round(const std::vector<Vec3>& rest,
+                                                                   const mesh::Triangles& triangles) {
   std::vector<std::vector<std::int32_t>> of_node(rest.size());
   std::vector<Vec3> normal;
   for (std::size_t f = 0; f < triangles.size(); ++f) {
@@ -83,7 +90,8 @@ PenetrationCheck::PenetrationCheck(const fem::Model& model, double search) : sea
     bodies_[b].round = facets_round(model.mesh.nodes, bodies_[b].boundary);
   }
   const auto add = [&](std::size_t result, std::size_t onto, const mesh::Triangles& from, bool self) {
-    auto it = std::find_if(passes_.begin(), passes_.end(), [&](const Pass& p) { return p.result == result && p.onto == onto; });
+    auto it = std::find_if(passes_.begin(), passes_.end(),
+                           [&](const Pass& p) { return p.result == result && p.onto == onto; });
     if (it == passes_.end()) it = passes_.insert(passes_.end(), {onto, result, {}, self});
     const auto nodes = mesh::nodes_of(from);
     it->nodes.insert(it->nodes.end(), nodes.begin(), nodes.end());
@@ -122,8 +130,10 @@ struct PenetrationCheck::Search {
   std::vector<Box> facet_boxes, tet_boxes;
   BoxGrid facet_grid, tet_grid;
   Search(const std::vector<Vec3>& x, const Body& body)
-      : facet_boxes(boxes_of(x, body.boundary)), tet_boxes(boxes_of(x, body.tets)),
-        facet_grid(facet_boxes, mean_diagonal(facet_boxes)), tet_grid(tet_boxes, mean_diagonal(tet_boxes)) {}
+      : facet_boxes(boxes_of(x, body.boundary)),
+        tet_boxes(boxes_of(x, body.tets)),
+        facet_grid(facet_boxes, mean_diagonal(facet_boxes)),
+        tet_grid(tet_boxes, mean_diagonal(tet_boxes)) {}
 };
 
 void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const Pass& pass, Penetration& out) const {

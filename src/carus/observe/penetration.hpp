@@ -11,21 +11,21 @@ namespace carus::observe {
 
 /// How two bodies stand to each other, by an exact search that shares nothing with the solver's contact.
 struct Penetration {
-  std::string a, b;            ///< bodies (Region::organ)
-  double least_gap = 0;        ///< [m] over both passes, at most `search`; negative: deepest penetration
-  double least_smooth_gap = 0; ///< [m] the same against the surface that the facets stand for: see `PenetrationCheck`
-  std::int32_t node = -1;      ///< the node that has least_gap
-  int penetrated = 0;          ///< nodes that lie inside the other body
+  std::string a, b;             ///< bodies (Region::organ)
+  double least_gap = 0;         ///< [m] over both passes, at most `search`; negative: deepest penetration
+  double least_smooth_gap = 0;  ///< [m] the same against the surface that the facets stand for: see `PenetrationCheck`
+  std::int32_t node = -1;       ///< the node that has least_gap
+  int penetrated = 0;           ///< nodes that lie inside the other body
 };
 
-/// Contact nodes of a body against all of another's boundary, and the other way round, for any two bodies that some contact pair joins.
-/// A node is inside if a tet of the other body holds it that does not have it as a corner; its depth is the exact distance to the
-/// nearest facet of that body's boundary, flat as it is in the mesh. A body against itself counts penetration only: a gap to one's own
-/// neighbours means nothing.
+/// Contact nodes of a body against all of another's boundary, and the other way round, for any two bodies that some
+/// contact pair joins. A node is inside if a tet of the other body holds it that does not have it as a corner; its
+/// depth is the exact distance to the nearest facet of that body's boundary, flat as it is in the mesh. A body against
+/// itself counts penetration only: a gap to one's own neighbours means nothing.
 ///
-/// Flat facets of edge h cut a surface of radius R short by up to h²/6R, on either side. The smooth gap takes that off: the distance to
-/// the facet less ½ Σ w_k (x_k - p)·n_k at its nearest point p = Σ w_k x_k, at most 1 mm. n_k is the normal at a corner, of those facets
-/// round it only that lie within 50° of this one at rest: rims stay rims.
+/// Flat facets of edge h cut a surface of radius R short by up to h²/6R, on either side. The smooth gap takes that off:
+/// the distance to the facet less ½ Σ w_k (x_k - p)·n_k at its nearest point p = Σ w_k x_k, at most 1 mm. n_k is the
+/// normal at a corner, of those facets round it only that lie within 50° of this one at rest: rims stay rims.
 class PenetrationCheck {
  public:
   /// `search` [m]: gaps beyond it are not looked for.
@@ -37,7 +37,8 @@ class PenetrationCheck {
     std::string name;
     std::vector<mesh::Tet> tets;
     mesh::Triangles boundary;
-    std::vector<std::array<std::vector<std::int32_t>, 3>> round;  // per facet and corner: facets that share it, but not over a rim
+    std::vector<std::array<std::vector<std::int32_t>, 3>>
+        round;  // per facet and corner: facets that share it, but not over a rim
   };
   struct Pass {
     std::size_t onto;                 // of bodies_
@@ -48,7 +49,8 @@ class PenetrationCheck {
   struct Gap {
     double flat, smooth;  // [m]
   };
-  [[nodiscard]] static double sagitta(const std::vector<Vec3>& x, const Body& body, std::int32_t facet, const Vec3& weights);
+  [[nodiscard]] static double sagitta(const std::vector<Vec3>& x, const Body& body, std::int32_t facet,
+                                      const Vec3& weights);
   struct Search;
   void run(const std::vector<Vec3>& x, const Search& onto, const Pass& pass, Penetration& out) const;
 

@@ -45,11 +45,10 @@ Attitude attitude(const HeadAxes& head, const Vec3& tangent) {
   // Across the canal the occiput lies along right ear × tangent, whatever the flexion.
   const Vec3 occiput = head.right.cross(tangent);
   return {std::atan2(-head.face.dot(tangent), head.vertex.dot(tangent)),
-          std::atan2(occiput.dot(right), occiput.dot(anterior)), std::asin(std::clamp(head.right.dot(tangent), -1.0, 1.0))};
+          std::atan2(occiput.dot(right), occiput.dot(anterior)),
+          std::asin(std::clamp(head.right.dot(tangent), -1.0, 1.0))};
 }
 
-double unwrapped(double angle, double reference) {
-  return angle - 2 * pi * std::round((angle - reference) / (2 * pi));
-}
+double unwrapped(double angle, double reference) { return angle - 2 * pi * std::round((angle - reference) / (2 * pi)); }
 
 }  // namespace carus::observe

@@ -13,8 +13,8 @@ struct Pose {
   Vec3 rest_centre = Vec3::Zero(), centre = Vec3::Zero();  ///< [m]
 };
 
-/// Best fit in the least-squares sense over `nodes` (at least three, not on one line), equal weights; R is proper (det R = 1).
-/// Kabsch, Acta Cryst. A32 (1976) 922; the determinant's correction after Umeyama, IEEE PAMI 13 (1991) 376.
+/// Best fit in the least-squares sense over `nodes` (at least three, not on one line), equal weights; R is proper (det
+/// R = 1). Kabsch, Acta Cryst. A32 (1976) 922; the determinant's correction after Umeyama, IEEE PAMI 13 (1991) 376.
 Pose best_fit(const std::vector<Vec3>& rest, const std::vector<Vec3>& current, const std::vector<std::int32_t>& nodes);
 
 /// Axis times angle of a rotation [rad], |.| <= pi.
@@ -31,7 +31,8 @@ struct HeadAxes {
 /// How a head lies in the birth canal.
 struct Attitude {
   double flexion;   ///< [rad] 0: the vertex leads (military), pi/2: the occiput leads; extension makes it smaller
-  double rotation;  ///< [rad] of the occiput from anterior in the plane across the canal: 0 OA, +pi/2 mother's right, ±pi OP
+  double rotation;  ///< [rad] of the occiput from anterior in the plane across the canal: 0 OA, +pi/2 mother's right,
+                    ///< ±pi OP
   double tilt;      ///< [rad] lateral (asynclitism): right ear leads if positive
 };
 

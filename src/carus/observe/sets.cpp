@@ -82,7 +82,9 @@ HeadSkin::HeadSkin(const std::vector<Vec3>& rest, const mesh::Triangles& skin, c
 
 HeadSkin::Load HeadSkin::load(const std::vector<Vec3>& x, const std::vector<Vec3>& force) const {
   if (nodes_.empty() || force.empty()) return {0, 0, 0};
-  const auto local = [&](std::int32_t n) { return std::size_t(std::lower_bound(nodes_.begin(), nodes_.end(), n) - nodes_.begin()); };
+  const auto local = [&](std::int32_t n) {
+    return std::size_t(std::lower_bound(nodes_.begin(), nodes_.end(), n) - nodes_.begin());
+  };
   std::vector<Vec3> area(nodes_.size(), Vec3::Zero());  // outward, a third of each facet
   for (const auto& t : facets_) {
     const Vec3 third = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]) / 6;

@@ -21,7 +21,8 @@ double extent(const std::vector<Vec3>& x, const Nodes& nodes, const Vec3& direct
 double least_height(const std::vector<Vec3>& x, const Nodes& nodes, const Vec3& origin, const Vec3& normal);
 double most_height(const std::vector<Vec3>& x, const Nodes& nodes, const Vec3& origin, const Vec3& normal);
 
-/// A closed line round an opening, from nodes near its rim: the mean of those in each of `sectors` sectors round `axis` at rest.
+/// A closed line round an opening, from nodes near its rim: the mean of those in each of `sectors` sectors round `axis`
+/// at rest.
 class Ring {
  public:
   Ring(const std::vector<Vec3>& rest, const Nodes& nodes, const Vec3& axis, int sectors = 24);

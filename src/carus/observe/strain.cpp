@@ -18,7 +18,8 @@ Mat3 edges(const std::vector<Vec3>& x, const mesh::Tet& t) {
 
 }  // namespace
 
-Strain::Strain(const mesh::TetMesh& mesh) : mesh_(mesh), inverse_rest_(mesh.tets.size()), rest_volume_(mesh.tets.size()) {
+Strain::Strain(const mesh::TetMesh& mesh)
+    : mesh_(mesh), inverse_rest_(mesh.tets.size()), rest_volume_(mesh.tets.size()) {
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
     const Mat3 Dm = edges(mesh.nodes, mesh.tets[e]);
     inverse_rest_[e] = Dm.inverse();

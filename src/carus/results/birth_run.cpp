@@ -27,9 +27,17 @@ double seconds_since(Clock::time_point t) { return std::chrono::duration<double>
 
 class BirthRun {
  public:
-  BirthRun(const scenario::Scenario& scenario, const fem::Model& model, const observe::Setup& setup, Engine& engine, const RunOptions& options)
-      : scenario_(scenario), model_(model), engine_(engine), o_(options), observer_(model, setup), stops_(schedule_of(scenario)),
-        scenario_hash_(hash_of(scenario)), mesh_hash_(hash_of(model.mesh)), checkpoint_file_(options.out / "checkpoint.h5") {
+  BirthRun(const scenario::Scenario& scenario, const fem::Model& model, const observe::Setup& setup, Engine& engine,
+           const RunOptions& options)
+      : scenario_(scenario),
+        model_(model),
+        engine_(engine),
+        o_(options),
+        observer_(model, setup),
+        stops_(schedule_of(scenario)),
+        scenario_hash_(hash_of(scenario)),
+        mesh_hash_(hash_of(model.mesh)),
+        checkpoint_file_(options.out / "checkpoint.h5") {
     wall_[meshing] = options.wall_meshing;
     if (options.resume) {
       resume();
@@ -63,7 +71,8 @@ class BirthRun {
     events_ = std::make_unique<Events>(o_.out / "events.jsonl", o_.event);
     frames_ = std::make_unique<Frames>(o_.out, model_, observer_.strain(), engine_.facts().labour_per_pseudo);
     write_atomically(o_.out / "scenario.resolved.yaml",
-                     fmt::format("# carus {} ({}), seed {}\n{}", o_.version, o_.commit, scenario_.seed, scenario::resolved_yaml(scenario_)));
+                     fmt::format("# carus {} ({}), seed {}\n{}", o_.version, o_.commit, scenario_.seed,
+                                 scenario::resolved_yaml(scenario_)));
   }
 
   void resume() {
@@ -71,13 +80,15 @@ class BirthRun {
     refuse_foreign(checkpoint_file_, c, scenario_hash_, mesh_hash_);
     curves_ = std::make_unique<Curves>(o_.out / "curves.csv", observer_.names(), std::size_t(c.rows));
     events_ = std::make_unique<Events>(o_.out / "events.jsonl", c.events, o_.event);
-    frames_ = std::make_unique<Frames>(o_.out, model_, observer_.strain(), engine_.facts().labour_per_pseudo, c.frame_times);
+    frames_ =
+        std::make_unique<Frames>(o_.out, model_, observer_.strain(), engine_.facts().labour_per_pseudo, c.frame_times);
     note_birth(observe::milestones(curves_->table()));
     engine_.restore(c.state);
     next_ = std::size_t(c.stops);
     for (std::size_t k = 0; k < c.wall.size() && k < wall_count; ++k) wall_[k] += c.wall[k];
     wall_[meshing] = std::max(o_.wall_meshing, c.wall.empty() ? 0 : c.wall[meshing]);
-    log(fmt::format("resumed at {:.1f} s of labour: {} rows and {} frames kept", c.state.time, c.rows, c.frame_times.size()));
+    log(fmt::format("resumed at {:.1f} s of labour: {} rows and {} frames kept", c.state.time, c.rows,
+                    c.frame_times.size()));
   }
 
   void advance() {
@@ -106,10 +117,12 @@ class BirthRun {
     const auto& table = curves_->table();
     const auto row = table.rows.size() - 1;
     const auto more = [&] {
-      return fmt::format(R"("station_mm": {:.2f}, "head_z_mm": {:.2f})", table.at(row, "station_mm"), table.at(row, "head_z_mm"));
+      return fmt::format(R"("station_mm": {:.2f}, "head_z_mm": {:.2f})", table.at(row, "station_mm"),
+                         table.at(row, "head_z_mm"));
     };
     if (row > 0 && table.at(row, "contractions_count") > table.at(row - 1, "contractions_count")) {
-      events_->add(table.at(row, "time_s"), "contraction", fmt::format(R"("number": {:.0f}, {})", table.at(row, "contractions_count"), more()));
+      events_->add(table.at(row, "time_s"), "contraction",
+                   fmt::format(R"("number": {:.0f}, {})", table.at(row, "contractions_count"), more()));
     }
     const auto milestones = observe::milestones(table);
     for (const auto& m : milestones) {
@@ -131,7 +144,8 @@ class BirthRun {
     const auto row = table.rows.size() - 1;
     const double t = engine_.state().time, end = scenario_.numerics.labour_duration;
     const double left = t > 0 ? (wall_[solving] + wall_[output]) * (end - t) / t : NAN;
-    o_.progress({t, end, int(table.at(row, "contractions_count")), table.at(row, "station_mm"), table.at(row, "head_z_mm"), left});
+    o_.progress({t, end, int(table.at(row, "contractions_count")), table.at(row, "station_mm"),
+                 table.at(row, "head_z_mm"), left});
   }
 
   /// Not before the head is born; then at once, or when the body is out.
@@ -182,7 +196,8 @@ class BirthRun {
     r.surface_nodes = mesh::nodes_of(mesh::boundary(model_.mesh)).size();
     r.steps = engine_.state().step;
     r.time_step = facts.step.time_step, r.time_scaling = facts.labour_per_pseudo;
-    r.unscaled_critical_step = facts.step.unscaled_critical_step, r.mass_scaled_fraction = facts.step.mass_scaled_fraction;
+    r.unscaled_critical_step = facts.step.unscaled_critical_step,
+    r.mass_scaled_fraction = facts.step.mass_scaled_fraction;
     r.limiting_region = facts.step.limiting_region;
     r.stages = engine_.timings();
     r.wall_meshing = wall_[meshing], r.wall_solving = wall_[solving], r.wall_output = wall_[output];
@@ -214,11 +229,13 @@ class BirthRun {
 
 }  // namespace
 
-observe::Setup observer_setup(const scenario::Scenario& s, const scenario::Assembly& assembly, const anatomy::Anatomy& anatomy) {
+observe::Setup observer_setup(const scenario::Scenario& s, const scenario::Assembly& assembly,
+                              const anatomy::Anatomy& anatomy) {
   observe::Setup setup;
   setup.landmarks = anatomy.landmarks;
   for (const char* name : {"point_fundus", "point_lower", "point_left", "point_right", "vulva"}) {
-    if (const auto it = assembly.node_sets.find(std::string("uterus.") + name); it != assembly.node_sets.end() && !it->second.empty()) {
+    if (const auto it = assembly.node_sets.find(std::string("uterus.") + name);
+        it != assembly.node_sets.end() && !it->second.empty()) {
       setup.nodes[name] = it->second;
     }
   }
@@ -250,9 +267,11 @@ observe::Setup observer_setup(const scenario::Scenario& s, const scenario::Assem
 void prepare_folder(const fs::path& out, bool resume) {
   std::error_code error;
   fs::create_directories(out, error);
-  if (!fs::is_directory(out)) throw InputError(fmt::format("{}: cannot be made a folder for the results: {}", out.string(), error.message()));
+  if (!fs::is_directory(out))
+    throw InputError(fmt::format("{}: cannot be made a folder for the results: {}", out.string(), error.message()));
   if (resume) return;
-  for (const char* file : {"summary.json", "checkpoint.h5", "frames.pvd", "curves.csv", "events.jsonl", "scenario.resolved.yaml", "log.txt"}) {
+  for (const char* file : {"summary.json", "checkpoint.h5", "frames.pvd", "curves.csv", "events.jsonl",
+                           "scenario.resolved.yaml", "log.txt"}) {
     fs::remove(out / file);
   }
   if (!fs::is_directory(out / "frames")) return;
@@ -261,8 +280,8 @@ void prepare_folder(const fs::path& out, bool resume) {
   }
 }
 
-Outcome run_birth(const scenario::Scenario& scenario, const fem::Model& model, const observe::Setup& setup, Engine& engine,
-                  const RunOptions& options) {
+Outcome run_birth(const scenario::Scenario& scenario, const fem::Model& model, const observe::Setup& setup,
+                  Engine& engine, const RunOptions& options) {
   return BirthRun(scenario, model, setup, engine, options).run();
 }
 

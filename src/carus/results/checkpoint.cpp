@@ -31,8 +31,10 @@ class Store {
  public:
   Store(const std::filesystem::path& file, bool write)
       : name_(file.string()),
-        file_(write ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT) : H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
-              H5Fclose, fmt::format("{}: cannot be {}", name_, write ? "written" : "read; it is not a checkpoint of carus")) {}
+        file_(write ? H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)
+                    : H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT),
+              H5Fclose,
+              fmt::format("{}: cannot be {}", name_, write ? "written" : "read; it is not a checkpoint of carus")) {}
 
   void put(const char* name, const void* data, std::size_t n, hid_t type) const {
     const hsize_t size = n;
@@ -42,7 +44,9 @@ class Store {
   }
   void put(const char* name, const std::vector<double>& v) const { put(name, v.data(), v.size(), H5T_NATIVE_DOUBLE); }
   void put(const char* name, const std::vector<Vec3>& v) const { put(name, v.data(), 3 * v.size(), H5T_NATIVE_DOUBLE); }
-  void put(const char* name, const std::vector<std::int64_t>& v) const { put(name, v.data(), v.size(), H5T_NATIVE_INT64); }
+  void put(const char* name, const std::vector<std::int64_t>& v) const {
+    put(name, v.data(), v.size(), H5T_NATIVE_INT64);
+  }
   void put(const char* name, const std::string& v) const { put(name, v.data(), v.size(), H5T_NATIVE_CHAR); }
 
   template <class Resize>
@@ -66,7 +70,9 @@ class Store {
   }
 
  private:
-  [[nodiscard]] std::string bad(const char* part) const { return fmt::format("{}: {}: missing or damaged; it is not a checkpoint of carus", name_, part); }
+  [[nodiscard]] std::string bad(const char* part) const {
+    return fmt::format("{}: {}: missing or damaged; it is not a checkpoint of carus", name_, part);
+  }
   std::string name_;
   Handle file_;
 };
@@ -124,10 +130,13 @@ std::string hash_of(const mesh::TetMesh& mesh) {
   return h.hex();
 }
 
-void refuse_foreign(const std::filesystem::path& file, const Checkpoint& c, const std::string& scenario_hash, const std::string& mesh_hash) {
+void refuse_foreign(const std::filesystem::path& file, const Checkpoint& c, const std::string& scenario_hash,
+                    const std::string& mesh_hash) {
   const auto refuse = [&](const char* what, const std::string& theirs, const std::string& ours) {
-    throw InputError(fmt::format("{}: was written for another {} ({} against {}); resume with the one in scenario.resolved.yaml, or run without --resume",
-                                 file.string(), what, theirs, ours));
+    throw InputError(
+        fmt::format("{}: was written for another {} ({} against {}); resume with the one in scenario.resolved.yaml, or "
+                    "run without --resume",
+                    file.string(), what, theirs, ours));
   };
   if (c.scenario_hash != scenario_hash) refuse("scenario", c.scenario_hash, scenario_hash);
   if (c.mesh_hash != mesh_hash) refuse("mesh", c.mesh_hash, mesh_hash);

@@ -15,8 +15,8 @@ struct Checkpoint {
   fem::State state;
   std::string scenario_hash, mesh_hash, version;
   std::int64_t rows = 0, stops = 0, events = 0;  ///< rows of curves.csv; stops of the schedule; lines of events.jsonl
-  std::vector<double> frame_times;                ///< [s of labour]
-  std::vector<double> wall;                       ///< [s] meshing, solving, output so far
+  std::vector<double> frame_times;               ///< [s of labour]
+  std::vector<double> wall;                      ///< [s] meshing, solving, output so far
 };
 
 /// HDF5, all numbers in full. Atomic: a kill leaves the checkpoint before.

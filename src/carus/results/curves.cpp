@@ -35,8 +35,8 @@ observe::Table read_curves(const std::filesystem::path& file) {
       continue;
     }
     if (cells.size() != table.names.size()) {
-      throw InputError(fmt::format("{}: line {} has {} values, the header {} names", file.string(), table.rows.size() + 2, cells.size(),
-                                   table.names.size()));
+      throw InputError(fmt::format("{}: line {} has {} values, the header {} names", file.string(),
+                                   table.rows.size() + 2, cells.size(), table.names.size()));
     }
     observe::Values row;
     for (const auto& cell : cells) row.push_back(std::strtod(cell.c_str(), nullptr));
@@ -56,7 +56,8 @@ Curves::Curves(const std::filesystem::path& file, std::vector<std::string> names
   keep_lines(file, keep + 1);
   table_ = read_curves(file);
   if (table_.names != names) {
-    throw InputError(fmt::format("{}: columns are not those of this version of carus; run again without --resume", file.string()));
+    throw InputError(
+        fmt::format("{}: columns are not those of this version of carus; run again without --resume", file.string()));
   }
   out_.open(file, std::ios::app);
 }

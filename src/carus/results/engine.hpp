@@ -11,8 +11,8 @@
 
 namespace carus::results {
 
-/// What a run needs of a solver, whichever it is. Stopping at a time may change the numbers, so a run stops at times that follow from
-/// its scenario alone; from `restore`d states it goes on to the very same bits.
+/// What a run needs of a solver, whichever it is. Stopping at a time may change the numbers, so a run stops at times
+/// that follow from its scenario alone; from `restore`d states it goes on to the very same bits.
 class Engine {
  public:
   virtual ~Engine() = default;

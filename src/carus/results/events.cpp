@@ -15,7 +15,8 @@ Events::Events(const std::filesystem::path& file, std::int64_t keep, Echo echo) 
 }
 
 void Events::add(double time, const std::string& event, const std::string& more) {
-  const auto line = fmt::format(R"({{"time_s": {:.3f}, "event": "{}"{}{}}})", time, event, more.empty() ? "" : ", ", more);
+  const auto line =
+      fmt::format(R"({{"time_s": {:.3f}, "event": "{}"{}{}}})", time, event, more.empty() ? "" : ", ", more);
   out_ << line << '\n' << std::flush;
   if (echo_) echo_(line);
   ++count_;

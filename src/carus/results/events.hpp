@@ -12,8 +12,8 @@ namespace carus::results {
 class Events {
  public:
   using Echo = std::function<void(const std::string& line)>;
-  explicit Events(const std::filesystem::path& file, Echo echo = {});             ///< afresh
-  Events(const std::filesystem::path& file, std::int64_t keep, Echo echo = {});   ///< after the first `keep` lines
+  explicit Events(const std::filesystem::path& file, Echo echo = {});            ///< afresh
+  Events(const std::filesystem::path& file, std::int64_t keep, Echo echo = {});  ///< after the first `keep` lines
 
   /// `more`: further members as JSON text, e.g. `"station_mm": 3.2`.
   void add(double time, const std::string& event, const std::string& more = {});

@@ -24,8 +24,12 @@ class Columns {
   const Table& table_;
 };
 
-double largest(const Values& v, std::size_t n) { return n == 0 ? 0 : *std::max_element(v.begin(), v.begin() + std::ptrdiff_t(n)); }
-double smallest(const Values& v, std::size_t n) { return n == 0 ? 0 : *std::min_element(v.begin(), v.begin() + std::ptrdiff_t(n)); }
+double largest(const Values& v, std::size_t n) {
+  return n == 0 ? 0 : *std::max_element(v.begin(), v.begin() + std::ptrdiff_t(n));
+}
+double smallest(const Values& v, std::size_t n) {
+  return n == 0 ? 0 : *std::min_element(v.begin(), v.begin() + std::ptrdiff_t(n));
+}
 double largest_in_size(const Values& v, std::size_t n) {
   const double hi = largest(v, n), lo = smallest(v, n);
   return hi >= -lo ? hi : lo;
@@ -78,7 +82,8 @@ void contraction_figures(Figures& f, const Columns& column, std::size_t n, const
   }
 }
 
-/// Rises of the sacrum over the labour: the largest angle of each contraction's period, then its local maxima by 5 % at least.
+/// Rises of the sacrum over the labour: the largest angle of each contraction's period, then its local maxima by 5 % at
+/// least.
 void sacrum_figures(Figures& f, const Columns& column, const labour::Contractions& c) {
   const auto time = column("time_s"), angle = column("sacrum_angle_deg");
   f.sacrum_max = largest(angle, angle.size()), f.sacrum_end = angle.back();
@@ -106,8 +111,9 @@ void sacrum_figures(Figures& f, const Columns& column, const labour::Contraction
 }
 
 void rotation_figures(Figures& f, const Columns& column, std::size_t n) {
-  const auto occiput = column("occiput_deg"), turn = column("internal_rotation_deg"), flexion = column("flexion_to_canal_deg"),
-             trunk = column("trunk_rotation_deg"), station = column("station_mm");
+  const auto occiput = column("occiput_deg"), turn = column("internal_rotation_deg"),
+             flexion = column("flexion_to_canal_deg"), trunk = column("trunk_rotation_deg"),
+             station = column("station_mm");
   const auto* crowning = find(f.milestones, "crowning");
   const auto at = crowning ? std::min(crowning->row, occiput.size() - 1) : occiput.size() - 1;
   f.occiput_at_crowning = occiput[at], f.rotation_at_crowning = turn[at];
@@ -129,7 +135,8 @@ void numeric_figures(Figures& f, const Columns& column) {
   f.penetration = largest(column("penetration_mm"), all);
   f.penetration_smooth = largest(column("penetration_smooth_mm"), all);
   for (std::size_t i = 0; i < all; ++i) {
-    if (time[i] > 0.05 * time.back() && internal[i] > 0) f.kinetic_over_internal = std::max(f.kinetic_over_internal, kinetic[i] / internal[i]);
+    if (time[i] > 0.05 * time.back() && internal[i] > 0)
+      f.kinetic_over_internal = std::max(f.kinetic_over_internal, kinetic[i] / internal[i]);
   }
   const double work = std::abs(largest_in_size(external, all));
   f.energy_error = work > 0 ? std::abs(largest_in_size(imbalance, all)) / work : 0;
@@ -166,7 +173,8 @@ Figures figures_of(const Table& table, const labour::Contractions& contractions)
   f.uterus_start = length.front(), f.uterus_end = length.back();
   const auto left = column("uterus_left_x_mm"), right = column("uterus_right_x_mm");
   for (std::size_t i = 0; i < all; ++i) {
-    if (std::abs(left[i] - right[i]) > std::abs(f.lateral_left - f.lateral_right)) f.lateral_left = left[i], f.lateral_right = right[i];
+    if (std::abs(left[i] - right[i]) > std::abs(f.lateral_left - f.lateral_right))
+      f.lateral_left = left[i], f.lateral_right = right[i];
   }
   sacrum_figures(f, column, contractions);
   int k = 0;
@@ -174,11 +182,15 @@ Figures figures_of(const Table& table, const labour::Contractions& contractions)
     f.moulding[k++] = largest_in_size(column(std::string("moulding_") + name + "_mm"), n);
   }
   f.skull_volume_change_max = std::abs(largest_in_size(column("skull_volume_change_percent"), n));
-  f.levator_stretch = largest(column("levator_stretch_ratio"), all), f.perineum_stretch = largest(column("perineum_stretch_ratio"), all);
-  f.hiatus_ratio = largest(column("hiatus_perimeter_ratio"), all), f.vulva_ratio = largest(column("vulva_transverse_ratio"), all);
-  f.expulsive_force = largest(column("expulsive_force_n"), n), f.head_force = largest(column("head_contact_force_n"), n);
+  f.levator_stretch = largest(column("levator_stretch_ratio"), all),
+  f.perineum_stretch = largest(column("perineum_stretch_ratio"), all);
+  f.hiatus_ratio = largest(column("hiatus_perimeter_ratio"), all),
+  f.vulva_ratio = largest(column("vulva_transverse_ratio"), all);
+  f.expulsive_force = largest(column("expulsive_force_n"), n),
+  f.head_force = largest(column("head_contact_force_n"), n);
   f.head_pressure_mean = largest(column("head_pressure_mean_kpa"), n);
-  f.push = largest(column("pressure_push_mmhg"), all), f.contraction = largest(column("pressure_contraction_mmhg"), all);
+  f.push = largest(column("pressure_push_mmhg"), all),
+  f.contraction = largest(column("pressure_contraction_mmhg"), all);
   f.tone = largest(column("pressure_tone_mmhg"), all);
   rotation_figures(f, column, n);
   numeric_figures(f, column);

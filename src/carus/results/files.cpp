@@ -24,7 +24,8 @@ void write_atomically(const fs::path& path, std::string_view text) {
     std::ofstream out(temporary, std::ios::binary);
     out << text;
     out.close();
-    if (!out) throw InputError(fmt::format("{}: cannot be written; is the disk full, or the folder read-only?", path.string()));
+    if (!out)
+      throw InputError(fmt::format("{}: cannot be written; is the disk full, or the folder read-only?", path.string()));
   });
 }
 
@@ -42,7 +43,8 @@ void keep_lines(const fs::path& path, std::size_t lines) {
   for (std::size_t i = 0; i < lines; ++i) {
     const auto newline = text.find('\n', end);
     if (newline == std::string::npos) {
-      throw InputError(fmt::format("{}: has {} whole lines; the checkpoint knows of {}; the folder was changed since", path.string(), i, lines));
+      throw InputError(fmt::format("{}: has {} whole lines; the checkpoint knows of {}; the folder was changed since",
+                                   path.string(), i, lines));
     }
     end = newline + 1;
   }

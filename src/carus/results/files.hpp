@@ -9,15 +9,17 @@
 
 namespace carus::results {
 
-/// Calls `write` with a temporary name beside `path`, then renames it over `path`: whoever reads, at any moment and after any kill,
-/// finds the old file or the new one, whole.
-void write_atomically(const std::filesystem::path& path, const std::function<void(const std::filesystem::path&)>& write);
+/// Calls `write` with a temporary name beside `path`, then renames it over `path`: whoever reads, at any moment and
+/// after any kill, finds the old file or the new one, whole.
+void write_atomically(const std::filesystem::path& path,
+                      const std::function<void(const std::filesystem::path&)>& write);
 void write_atomically(const std::filesystem::path& path, std::string_view text);
 
 /// Whole text of a file; throws InputError if it cannot be read.
 std::string read_text(const std::filesystem::path& path);
 
-/// Keeps the first `lines` lines of a text file and drops the rest, a torn last line among it. Throws InputError if it has fewer.
+/// Keeps the first `lines` lines of a text file and drops the rest, a torn last line among it. Throws InputError if it
+/// has fewer.
 void keep_lines(const std::filesystem::path& path, std::size_t lines);
 
 /// FNV-1a, 64 bit: tells one scenario or mesh from another, no more.

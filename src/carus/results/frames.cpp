@@ -12,9 +12,13 @@
 
 namespace carus::results {
 
-Frames::Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain, double labour_per_pseudo,
-               std::vector<double> times)
-    : folder_(std::move(folder)), model_(model), strain_(strain), labour_per_pseudo_(labour_per_pseudo), times_(std::move(times)) {
+Frames::Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain,
+               double labour_per_pseudo, std::vector<double> times)
+    : folder_(std::move(folder)),
+      model_(model),
+      strain_(strain),
+      labour_per_pseudo_(labour_per_pseudo),
+      times_(std::move(times)) {
   std::filesystem::create_directories(folder_ / "frames");
   std::vector<std::int32_t> organ_of_region;
   for (const auto& r : model.regions) {
@@ -28,7 +32,8 @@ Frames::Frames(std::filesystem::path folder, const fem::Model& model, const obse
 }
 
 void Frames::write(const fem::State& state, const std::vector<Vec3>& contact_force) {
-  // A grid of its own for every frame: VTK keeps notes in arrays that it has written once, and a frame must not tell which came before.
+  // A grid of its own for every frame: VTK keeps notes in arrays that it has written once, and a frame must not tell
+  // which came before.
   const auto owned = tet_grid(state.x, model_.mesh.tets);
   auto& grid = *owned;
   set_integers(*grid.GetCellData(), "region", model_.mesh.labels);
@@ -51,7 +56,9 @@ void Frames::write(const fem::State& state, const std::vector<Vec3>& contact_for
 }
 
 void Frames::write_index() const {
-  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+  std::string text =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n  "
+      "<Collection>\n";
   for (std::size_t i = 0; i < times_.size(); ++i) {
     text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"frames/frame_{:04}.vtu\"/>\n", times_[i], i);
   }

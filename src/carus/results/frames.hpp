@@ -10,7 +10,8 @@
 
 namespace carus::results {
 
-/// frames/frame_NNNN.vtu (VTK XML, appended raw, single precision, zlib) and frames.pvd, which names only frames that are whole.
+/// frames/frame_NNNN.vtu (VTK XML, appended raw, single precision, zlib) and frames.pvd, which names only frames that
+/// are whole.
 ///
 ///     points     current position [m];  displacement [m], velocity [m/s of labour], contact_force [N]
 ///     cells      region, organ (numbers by name in the field data), J, max_stretch

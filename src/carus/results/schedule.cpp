@@ -11,7 +11,8 @@ namespace carus::results {
 std::vector<Stop> schedule_of(const scenario::Scenario& s) {
   const double end = s.numerics.labour_duration;
   std::vector<Stop> outputs{{0, true, s.output.frames > 0}, {end, true, s.output.frames > 0}};
-  for (double k = 1; k * s.output.curve_interval < end; ++k) outputs.push_back({k * s.output.curve_interval, true, false});
+  for (double k = 1; k * s.output.curve_interval < end; ++k)
+    outputs.push_back({k * s.output.curve_interval, true, false});
   for (int k = 1; k < s.output.frames; ++k) outputs.push_back({k * end / s.output.frames, true, true});
   for (const double t : contraction_starts(s.loads.contractions, end)) outputs.push_back({t, true, false});
   for (const double t : contraction_peaks(s.loads.contractions, end)) outputs.push_back({t, true, false});

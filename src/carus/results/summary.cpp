@@ -27,26 +27,43 @@ Json numbers(const std::vector<double>& values) {
 }
 
 Json numerics_of(const Figures& f, const RunFacts& r) {
-  return {{"elements", r.elements}, {"nodes", r.nodes}, {"surface_nodes", r.surface_nodes}, {"steps", r.steps}, {"min_J", number(f.min_J)},
-          {"inverted", int(f.inverted)}, {"max_penetration_mm", number(f.penetration)}, {"max_penetration_smooth_mm", number(f.penetration_smooth)},
-          {"kinetic_over_internal_max", number(f.kinetic_over_internal)}, {"energy_balance_error", number(f.energy_error)},
-          {"time_scaling", number(r.time_scaling)}, {"time_step_s", number(r.time_step)},
-          {"unscaled_critical_step_s", number(r.unscaled_critical_step)}, {"mass_scaled_fraction", number(r.mass_scaled_fraction)},
+  return {{"elements", r.elements},
+          {"nodes", r.nodes},
+          {"surface_nodes", r.surface_nodes},
+          {"steps", r.steps},
+          {"min_J", number(f.min_J)},
+          {"inverted", int(f.inverted)},
+          {"max_penetration_mm", number(f.penetration)},
+          {"max_penetration_smooth_mm", number(f.penetration_smooth)},
+          {"kinetic_over_internal_max", number(f.kinetic_over_internal)},
+          {"energy_balance_error", number(f.energy_error)},
+          {"time_scaling", number(r.time_scaling)},
+          {"time_step_s", number(r.time_step)},
+          {"unscaled_critical_step_s", number(r.unscaled_critical_step)},
+          {"mass_scaled_fraction", number(r.mass_scaled_fraction)},
           {"limiting_region", r.limiting_region}};
 }
 
 Json declared(const scenario::Scenario& s) {
   const auto o = scenario::explicit_options(s);
-  return {{"resolution", scenario::name_of(s.resolution)}, {"labour_duration_s", number(o.labour_duration)},
-          {"pseudo_duration_s", number(o.pseudo_duration)}, {"drag_per_s", number(o.drag)}, {"safety", number(o.safety)},
-          {"max_node_speed_m_s", number(o.max_node_speed)}, {"contact_sweeps", o.contact_sweeps},
-          {"contact_search_mm", number(1e3 * o.contact_search)}, {"contact_correction_m_s", number(o.contact_correction)},
-          {"canal_radius_mm", number(1e3 * s.anatomy.canal.radius)}, {"retraction", s.retraction.enabled}};
+  return {{"resolution", scenario::name_of(s.resolution)},
+          {"labour_duration_s", number(o.labour_duration)},
+          {"pseudo_duration_s", number(o.pseudo_duration)},
+          {"drag_per_s", number(o.drag)},
+          {"safety", number(o.safety)},
+          {"max_node_speed_m_s", number(o.max_node_speed)},
+          {"contact_sweeps", o.contact_sweeps},
+          {"contact_search_mm", number(1e3 * o.contact_search)},
+          {"contact_correction_m_s", number(o.contact_correction)},
+          {"canal_radius_mm", number(1e3 * s.anatomy.canal.radius)},
+          {"retraction", s.retraction.enabled}};
 }
 
 Json movements(const Figures& f) {
-  return {{"occiput_at_crowning_deg", number(f.occiput_at_crowning)}, {"internal_rotation_deg", number(f.rotation_at_crowning)},
-          {"rotation_done_at_station_mm", number(f.rotation_done_station)}, {"extension_deg", number(f.extension)},
+  return {{"occiput_at_crowning_deg", number(f.occiput_at_crowning)},
+          {"internal_rotation_deg", number(f.rotation_at_crowning)},
+          {"rotation_done_at_station_mm", number(f.rotation_done_station)},
+          {"extension_deg", number(f.extension)},
           {"external_rotation_deg", number(f.external_rotation)}};
 }
 
@@ -60,15 +77,19 @@ std::string summary_json(const Figures& f, const scenario::Scenario& s, const Ru
   j["birth_time_s"] = f.birth_time ? number(*f.birth_time) : Json(nullptr);
   j["end_time_s"] = number(f.end_time);
   j["contractions"] = f.contractions;
-  j["head_displacement_mm"] = {{"x", number(f.amplitude[0])}, {"y", number(f.amplitude[1])}, {"z", number(f.amplitude[2])}};
+  j["head_displacement_mm"] = {
+      {"x", number(f.amplitude[0])}, {"y", number(f.amplitude[1])}, {"z", number(f.amplitude[2])}};
   j["head_speed_mm_s"] = {{"mean", number(f.speed.mean)}, {"min", number(f.speed.min)}, {"max", number(f.speed.max)}};
   j["recession_per_rest_mm"] = numbers(f.recession);
   j["head_at_contraction_peaks_mm"] = numbers(f.descent_at_peaks);
   j["head_travel_at_contraction_peaks_mm"] = numbers(f.travel_at_peaks);
   j["uterus_length_mm"] = {{"start", number(f.uterus_start)}, {"end", number(f.uterus_end)}};
   j["uterus_lateral_mm"] = {{"left", number(f.lateral_left)}, {"right", number(f.lateral_right)}};
-  j["sacrum_angle_deg"] = {{"max", number(f.sacrum_max)}, {"end", number(f.sacrum_end)}, {"peaks", f.sacrum_peaks.size()}};
-  j["moulding_mm"] = {{"occipitofrontal", number(f.moulding[0])}, {"biparietal", number(f.moulding[1])}, {"vertical", number(f.moulding[2])}};
+  j["sacrum_angle_deg"] = {
+      {"max", number(f.sacrum_max)}, {"end", number(f.sacrum_end)}, {"peaks", f.sacrum_peaks.size()}};
+  j["moulding_mm"] = {{"occipitofrontal", number(f.moulding[0])},
+                      {"biparietal", number(f.moulding[1])},
+                      {"vertical", number(f.moulding[2])}};
   j["skull_volume_change_max_percent"] = number(f.skull_volume_change_max);
   j["levator_stretch_max"] = number(f.levator_stretch);
   j["hiatus_perimeter_ratio_max"] = number(f.hiatus_ratio);
@@ -77,7 +98,9 @@ std::string summary_json(const Figures& f, const scenario::Scenario& s, const Ru
   j["expulsive_force_n"] = {{"max", number(f.expulsive_force)}};
   j["head_contact_force_n"] = {{"max", number(f.head_force)}};
   j["head_pressure_kpa"] = {{"mean_max", number(f.head_pressure_mean)}};
-  j["pressure_mmhg"] = {{"base", number(s.loads.contractions.base / units::mmHg)}, {"contraction", number(f.contraction)}, {"push", number(f.push)},
+  j["pressure_mmhg"] = {{"base", number(s.loads.contractions.base / units::mmHg)},
+                        {"contraction", number(f.contraction)},
+                        {"push", number(f.push)},
                         {"tone", number(f.tone)}};
   j["movements"] = movements(f);
   j["milestones_s"] = Json::object();
@@ -88,10 +111,17 @@ std::string summary_json(const Figures& f, const scenario::Scenario& s, const Ru
   for (const auto& c : s.calibrated) j["calibrated"].push_back({{"key", c.key}, {"to", c.to}});
   j["bands"] = Json::array();
   for (const auto& b : bands_of(f, s.loads.contractions)) {
-    j["bands"].push_back({{"band", b.number}, {"what", b.what}, {"expected", b.expected}, {"source", b.source}, {"obtained", b.obtained}, {"inside", b.inside}});
+    j["bands"].push_back({{"band", b.number},
+                          {"what", b.what},
+                          {"expected", b.expected},
+                          {"source", b.source},
+                          {"obtained", b.obtained},
+                          {"inside", b.inside}});
   }
-  j["wall_s"] = {{"total", number(r.wall_meshing + r.wall_solving + r.wall_output)}, {"meshing", number(r.wall_meshing)},
-                 {"solving", number(r.wall_solving)}, {"output", number(r.wall_output)}};
+  j["wall_s"] = {{"total", number(r.wall_meshing + r.wall_solving + r.wall_output)},
+                 {"meshing", number(r.wall_meshing)},
+                 {"solving", number(r.wall_solving)},
+                 {"output", number(r.wall_output)}};
   j["solver_stages_s"] = Json::object();
   for (const auto& [stage, seconds] : r.stages) j["solver_stages_s"][stage] = number(seconds);
   j["threads"] = r.threads;

@@ -17,7 +17,7 @@ struct RunFacts {
   std::int64_t steps = 0;
   double time_step = 0, time_scaling = 0, unscaled_critical_step = 0, mass_scaled_fraction = 0;
   std::string limiting_region;
-  std::vector<std::pair<std::string, double>> stages;  ///< [s] within the solver
+  std::vector<std::pair<std::string, double>> stages;          ///< [s] within the solver
   double wall_meshing = 0, wall_solving = 0, wall_output = 0;  ///< [s]
   int threads = 1;
   std::string version, commit;

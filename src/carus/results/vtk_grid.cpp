@@ -78,7 +78,8 @@ void write_vtu(vtkUnstructuredGrid& grid, const std::filesystem::path& file) {
   writer->SetIdTypeToInt32();
   writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1);
-  if (!writer->Write()) throw InputError(fmt::format("{}: cannot be written; is the disk full, or the folder read-only?", file.string()));
+  if (!writer->Write())
+    throw InputError(fmt::format("{}: cannot be written; is the disk full, or the folder read-only?", file.string()));
 }
 
 }  // namespace carus::results

@@ -249,7 +249,8 @@ class Assembler {
     std::map<std::int32_t, double> area;
     for (const std::int32_t n : canal) area[n] = 0;
     for (const mesh::Triangle& t : outer->second) {
-      const Vec3 u = model().mesh.nodes[t[1]] - model().mesh.nodes[t[0]], w = model().mesh.nodes[t[2]] - model().mesh.nodes[t[0]];
+      const Vec3 u = model().mesh.nodes[t[1]] - model().mesh.nodes[t[0]],
+                 w = model().mesh.nodes[t[2]] - model().mesh.nodes[t[0]];
       for (const std::int32_t n : t)
         if (const auto it = area.find(n); it != area.end()) it->second += u.cross(w).norm() / 6;
     }

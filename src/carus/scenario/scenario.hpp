@@ -50,7 +50,7 @@ struct Coccyx {
   double damping = 0;    ///< [N m s/rad], in labour time
 };
 struct Attachments {
-  double tie_axial = 0, tie_transverse = 0;  ///< [N/m], totals over all tied nodes
+  double tie_axial = 0, tie_transverse = 0;   ///< [N/m], totals over all tied nodes
   double bed_posterior = 0, bed_lateral = 0;  ///< [Pa/m], of the canal's outer face
   bool canal_blocked = true;
 };

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "carus/core/parallel.hpp"
 #include "carus/core/error.hpp"
+#include "carus/core/parallel.hpp"
 #include "carus/material/active_strain.hpp"
 #include "carus/material/fibre.hpp"
 #include "carus/material/hooke.hpp"
@@ -42,10 +42,14 @@ double element_bulk(const material::Material& m) { return m.average_nodal_pressu
 
 double energy_density(const material::Material& m, const material::Mat3T<double>& F) {
   switch (m.law) {
-    case material::Law::neo_hooke: return density(material::NeoHooke<double>(m.c10), F, element_bulk(m));
-    case material::Law::mooney_rivlin: return density(material::MooneyRivlin<double>(m.c10, m.c01), F, element_bulk(m));
-    case material::Law::hooke_corotated: return density(material::HookeCorotated<double>(m.shear_modulus()), F, element_bulk(m));
-    case material::Law::hooke_small_strain: return density(material::HookeSmallStrain<double>(m.shear_modulus()), F, element_bulk(m));
+    case material::Law::neo_hooke:
+      return density(material::NeoHooke<double>(m.c10), F, element_bulk(m));
+    case material::Law::mooney_rivlin:
+      return density(material::MooneyRivlin<double>(m.c10, m.c01), F, element_bulk(m));
+    case material::Law::hooke_corotated:
+      return density(material::HookeCorotated<double>(m.shear_modulus()), F, element_bulk(m));
+    case material::Law::hooke_small_strain:
+      return density(material::HookeSmallStrain<double>(m.shear_modulus()), F, element_bulk(m));
   }
   CARUS_ASSERT(false);
 }
@@ -89,7 +93,8 @@ double stored_energy(const fem::Model& model, const std::vector<fem::Block>& blo
     return block;
   });
   sum += tether_energy(model, state);
-  for (std::size_t h = 0; h < model.hinges.size(); ++h) sum += 0.5 * model.hinges[h].stiffness * std::pow(state.hinge_angle[h], 2);
+  for (std::size_t h = 0; h < model.hinges.size(); ++h)
+    sum += 0.5 * model.hinges[h].stiffness * std::pow(state.hinge_angle[h], 2);
   return sum;
 }
 

@@ -19,10 +19,11 @@ namespace carus::solve {
 
 namespace {
 
-constexpr int block_count = 16;            // more than any machine we expect has cores for one birth; part of the result
+constexpr int block_count = 16;  // more than any machine we expect has cores for one birth; part of the result
 constexpr std::size_t node_chunk = 1024;
-constexpr int loads_every = 4;             // steps: surfaces turn slowly against the step
-constexpr int sample_contact_every = 7;    // steps, for the mean contact force between two observations; no multiple of another rhythm
+constexpr int loads_every = 4;  // steps: surfaces turn slowly against the step
+constexpr int sample_contact_every =
+    7;  // steps, for the mean contact force between two observations; no multiple of another rhythm
 
 enum Stage { elements, contact_search, contact_solve, nodes, loads, stage_count };
 constexpr const char* stage_names[stage_count] = {"elements", "contact search", "contact solve", "nodes", "loads"};
@@ -54,7 +55,7 @@ struct Explicit::Impl {
   const fem::Model& model;
   ExplicitOptions options;
   parallel::Threads threads;
-  double scale;              // labour time over pseudo time
+  double scale;  // labour time over pseudo time
   double dt;
   std::int64_t total_steps;
   Masses masses;
@@ -65,13 +66,13 @@ struct Explicit::Impl {
   std::vector<std::pair<std::int32_t, std::int32_t>> shares;  // (block, local)
   std::unique_ptr<fem::NodalPressure> nodal_pressure;
   fem::RestLength rest_length;
-  std::vector<std::array<std::int32_t, 3>> retracting;        // per retracting element: block, batch, lane
+  std::vector<std::array<std::int32_t, 3>> retracting;  // per retracting element: block, batch, lane
   std::vector<Mat3> retracting_inverse_edges;
   std::unique_ptr<contact::Contact> contact;
   fem::State state, good;
   Work work, good_work;
   std::vector<Vec3> external_force, contact_impulse;
-  std::vector<Vec3> v_before, v_free;        // at the start of a step, and predicted without contact
+  std::vector<Vec3> v_before, v_free;          // at the start of a step, and predicted without contact
   std::vector<double> rate_before, rate_free;  // of the hinges
   int contact_samples = 0;
   std::vector<NodeSums> sums;
@@ -112,7 +113,9 @@ struct Explicit::Impl {
   /// What an impulse meets within a step. Contact must see it too: with the bare mass, a resting contact would carry
   /// 1/(1 + dt drag) of the load.
   double dragged_mass(std::size_t i) const { return masses.scaled[i] + dt * options.drag / scale * masses.unscaled[i]; }
-  double dragged_inertia(const fem::Hinge& h) const { return h.inertia + dt * h.damping / scale + dt * dt * h.stiffness; }
+  double dragged_inertia(const fem::Hinge& h) const {
+    return h.inertia + dt * h.damping / scale + dt * dt * h.stiffness;
+  }
 
   void make_inverse_masses() {
     inverse_mass.assign(state.x.size(), Vec3::Zero());
@@ -193,7 +196,8 @@ struct Explicit::Impl {
       if (pressures[l] != 0) fem::add_pressure_forces(model.pressures[l], pressures[l], state.x, external_force);
     }
     for (const auto& tether : model.tethers) {
-      external_force[tether.node] -= tether.stiffness.cwiseProduct(state.x[tether.node] - model.mesh.nodes[tether.node]);
+      external_force[tether.node] -=
+          tether.stiffness.cwiseProduct(state.x[tether.node] - model.mesh.nodes[tether.node]);
     }
   }
 
@@ -250,9 +254,10 @@ struct Explicit::Impl {
       reports[i] = {};
       for (std::size_t r = 0; r < b.runs.size(); ++r) {
         const auto& run = b.runs[r];
-        const auto report = kernel.forces(b.batches.data() + run.begin, run.end - run.begin, materials[run.region], b.x.data(),
-                                          b.f.data(), b.pressure_begin[r] < 0 ? nullptr : b.pressure.data() + b.pressure_begin[r],
-                                          b.history.data() + b.history_begin[r]);
+        const auto report =
+            kernel.forces(b.batches.data() + run.begin, run.end - run.begin, materials[run.region], b.x.data(),
+                          b.f.data(), b.pressure_begin[r] < 0 ? nullptr : b.pressure.data() + b.pressure_begin[r],
+                          b.history.data() + b.history_begin[r]);
         reports[i].inverted += report.inverted;
         reports[i].min_J = std::min(reports[i].min_J, report.min_J);
         if (report.worst_element >= 0) reports[i].worst_element = report.worst_element;
@@ -305,7 +310,8 @@ struct Explicit::Impl {
 
   double hinge_kinetic() const {
     double sum = 0;
-    for (std::size_t h = 0; h < model.hinges.size(); ++h) sum += 0.5 * model.hinges[h].inertia * state.hinge_rate[h] * state.hinge_rate[h];
+    for (std::size_t h = 0; h < model.hinges.size(); ++h)
+      sum += 0.5 * model.hinges[h].inertia * state.hinge_rate[h] * state.hinge_rate[h];
     return sum;
   }
 
@@ -319,8 +325,9 @@ struct Explicit::Impl {
     }
   }
 
-  /// Every force works along the mean velocity of the step, contact included; so the works add up to the change of kinetic
-  /// energy. Measured before the contact solve, a resting contact would seem to take what the load only seems to give.
+  /// Every force works along the mean velocity of the step, contact included; so the works add up to the change of
+  /// kinetic energy. Measured before the contact solve, a resting contact would seem to take what the load only seems
+  /// to give.
   void book_work(std::size_t i, NodeSums& s) const {
     const Vec3 mean = 0.5 * (state.v[i] + v_before[i]);
     const double damping = dt * options.drag / scale * masses.unscaled[i] * state.v[i].dot(mean);
@@ -385,8 +392,9 @@ struct Explicit::Impl {
       const std::string organ = e < 0 ? "?" : model.regions[model.mesh.labels[e]].name;
       const auto finite = [&](auto n) { return state.x[n].allFinite(); };
       const bool inversion = e >= 0 && std::all_of(model.mesh.tets[e].begin(), model.mesh.tets[e].end(), finite);
-      const std::string what = fmt::format("{} of element {} ({}) at step {}, {:.1f} s of labour",
-                                           inversion ? "inversion" : "non-finite state", e, organ, state.step, state.time);
+      const std::string what =
+          fmt::format("{} of element {} ({}) at step {}, {:.1f} s of labour",
+                      inversion ? "inversion" : "non-finite state", e, organ, state.step, state.time);
       state = good, work = good_work;
       restore_private();
       throw NumericalFailure(what + "; the state kept is that of " + fmt::format("{:.1f} s", state.time));
@@ -419,8 +427,10 @@ struct Explicit::Impl {
     p += contact->save().size();
     for (auto& b : blocks) {
       for (auto& h : b.history) {
-        for (auto& row : h.s_iso) for (float& v : row) v = float(*p++);
-        for (auto& row : h.h) for (float& v : row) v = float(*p++);
+        for (auto& row : h.s_iso)
+          for (float& v : row) v = float(*p++);
+        for (auto& row : h.h)
+          for (float& v : row) v = float(*p++);
       }
     }
     rest_length.rings() = state.rest_length;
@@ -430,7 +440,8 @@ struct Explicit::Impl {
   }
 };
 
-Explicit::Explicit(const fem::Model& model, const ExplicitOptions& options) : impl_(std::make_unique<Impl>(model, options)) {}
+Explicit::Explicit(const fem::Model& model, const ExplicitOptions& options)
+    : impl_(std::make_unique<Impl>(model, options)) {}
 Explicit::~Explicit() = default;
 
 StepReport Explicit::step_report() const {
@@ -464,7 +475,8 @@ Observables Explicit::observe() const {
   o.kinetic += s.hinge_kinetic();
   o.internal = stored_energy(s.model, s.blocks, s.state) + s.nodal_pressure->energy();
   // The tethers are among the external forces, but what they take is stored.
-  o.external_work = s.work.external + tether_energy(s.model, s.state), o.contact_work = s.work.contact, o.damping_work = s.work.damping;
+  o.external_work = s.work.external + tether_energy(s.model, s.state), o.contact_work = s.work.contact,
+  o.damping_work = s.work.damping;
   o.active_work = s.work.active;
   o.least_gap = s.least_gap;
   for (const auto& r : s.reports) o.min_J = std::min(o.min_J, double(r.min_J)), o.inverted += r.inverted;

@@ -11,7 +11,8 @@ namespace carus::solve {
 
 double critical_step(const fem::Model& model, std::size_t tet) {
   const Mat3 B = fem::inverse_edges(model.mesh, tet);
-  const double gradients = B.squaredNorm() + B.colwise().sum().squaredNorm();  // rows of B: grad N_1..3; N_0 takes minus the sum
+  const double gradients =
+      B.squaredNorm() + B.colwise().sum().squaredNorm();  // rows of B: grad N_1..3; N_0 takes minus the sum
   const auto& m = model.regions[model.mesh.labels[tet]].material;
   const double c2 = (m.bulk_modulus() + 4.0 / 3.0 * m.shear_modulus()) / m.density;
   return 1 / std::sqrt(c2 * gradients);

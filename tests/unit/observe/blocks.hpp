@@ -10,7 +10,8 @@
 namespace carus::test {
 
 /// Adds a box of n^3 cells of six tets each, one region, with its surface as a contact surface.
-inline void add_box(fem::Model& model, const std::string& region, const std::string& organ, const Vec3& low, const Vec3& high, int n) {
+inline void add_box(fem::Model& model, const std::string& region, const std::string& organ, const Vec3& low,
+                    const Vec3& high, int n) {
   const auto first = std::int32_t(model.mesh.nodes.size());
   const auto label = std::int32_t(model.regions.size());
   fem::Region r;
@@ -20,7 +21,8 @@ inline void add_box(fem::Model& model, const std::string& region, const std::str
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) model.mesh.nodes.push_back(low + (high - low).cwiseProduct(Vec3(i, j, k) / n));
   const auto node = [&](int i, int j, int k) { return first + std::int32_t((k * (n + 1) + j) * (n + 1) + i); };
-  constexpr std::array<std::array<int, 3>, 6> orders{{{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
+  constexpr std::array<std::array<int, 3>, 6> orders{
+      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
   mesh::TetMesh own;
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
@@ -49,9 +51,10 @@ inline fem::Model fetus_of_boxes() {
 
 inline observe::Setup setup_of_boxes() {
   observe::Setup s;
-  s.landmarks = {{"occiput", {-0.04, 0, 0.04}},     {"sinciput", {0.04, 0, 0.04}},       {"biparietal_right", {0, 0.05, 0.04}},
-                 {"biparietal_left", {0, -0.05, 0.04}}, {"spine_right", {0.05, 0, -0.05}}, {"spine_left", {-0.05, 0, -0.05}},
-                 {"vulva_centre", {0, 0, -0.1}},    {"vulva_normal", {0, 0, -1}}};
+  s.landmarks = {{"occiput", {-0.04, 0, 0.04}},         {"sinciput", {0.04, 0, 0.04}},
+                 {"biparietal_right", {0, 0.05, 0.04}}, {"biparietal_left", {0, -0.05, 0.04}},
+                 {"spine_right", {0.05, 0, -0.05}},     {"spine_left", {-0.05, 0, -0.05}},
+                 {"vulva_centre", {0, 0, -0.1}},        {"vulva_normal", {0, 0, -1}}};
   s.fetal_regions = {"skull", "fetal_body"}, s.head_regions = {"skull"}, s.trunk_regions = {"fetal_body"};
   s.canal_nearest = [](const Vec3& x) { return -x.z(); };
   s.canal_tangent = [](double) { return Vec3(0, 0, -1); };

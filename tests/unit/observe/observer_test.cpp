@@ -30,9 +30,9 @@ class BoxObserver : public testing::Test {
 
 TEST_F(BoxObserver, AtRestNothingHasMoved) {
   const auto v = observer.measure(moved(0, [](const Vec3& x) { return x; }), seen, nullptr);
-  for (const char* name : {"head_x_mm", "head_y_mm", "head_z_mm", "head_travel_mm", "internal_rotation_deg", "trunk_rotation_deg",
-                           "moulding_occipitofrontal_mm", "moulding_biparietal_mm", "moulding_vertical_mm", "skull_volume_change_percent",
-                           "penetration_mm", "inverted_count"}) {
+  for (const char* name : {"head_x_mm", "head_y_mm", "head_z_mm", "head_travel_mm", "internal_rotation_deg",
+                           "trunk_rotation_deg", "moulding_occipitofrontal_mm", "moulding_biparietal_mm",
+                           "moulding_vertical_mm", "skull_volume_change_percent", "penetration_mm", "inverted_count"}) {
     EXPECT_NEAR(value(v, name), 0, 1e-9) << name;
   }
   EXPECT_NEAR(value(v, "volume_skull_ml"), 80 * 100 * 80 * 1e-3, 1e-9);
@@ -45,7 +45,8 @@ TEST_F(BoxObserver, AtRestNothingHasMoved) {
 TEST_F(BoxObserver, ReadsATurnADescentAndASpeed) {
   const auto rest = observer.measure(moved(0, [](const Vec3& x) { return x; }), seen, nullptr);
   const Mat3 R = Eigen::AngleAxisd(-pi / 3, Vec3::UnitZ()).toRotationMatrix();
-  const auto v = observer.measure(moved(100, [&](const Vec3& x) { return Vec3(R * x + Vec3(0.001, 0.02, -0.03)); }), seen, &rest);
+  const auto v =
+      observer.measure(moved(100, [&](const Vec3& x) { return Vec3(R * x + Vec3(0.001, 0.02, -0.03)); }), seen, &rest);
   EXPECT_NEAR(value(v, "head_x_mm"), 1, 1e-9);
   EXPECT_NEAR(value(v, "head_y_mm"), 20, 1e-9);
   EXPECT_NEAR(value(v, "head_z_mm"), -30, 1e-9);
@@ -61,7 +62,8 @@ TEST_F(BoxObserver, ReadsATurnADescentAndASpeed) {
 TEST_F(BoxObserver, MouldingIsMeasuredAlongTheHeadsOwnAxes) {
   // Head lengthened along occiput-forehead (rest x) by 5 %, then turned: 80 mm become 84.
   const Mat3 R = Eigen::AngleAxisd(0.7, Vec3(1, 1, 2).normalized()).toRotationMatrix();
-  const auto v = observer.measure(moved(1, [&](const Vec3& x) { return Vec3(R * Vec3(1.05 * x.x(), x.y(), x.z())); }), seen, nullptr);
+  const auto v = observer.measure(moved(1, [&](const Vec3& x) { return Vec3(R * Vec3(1.05 * x.x(), x.y(), x.z())); }),
+                                  seen, nullptr);
   EXPECT_NEAR(value(v, "moulding_occipitofrontal_mm"), 4, 1e-6);
   EXPECT_NEAR(value(v, "moulding_biparietal_mm"), 0, 1e-6);
   EXPECT_NEAR(value(v, "skull_volume_change_percent"), 5, 1e-9);
@@ -69,8 +71,8 @@ TEST_F(BoxObserver, MouldingIsMeasuredAlongTheHeadsOwnAxes) {
 
 TEST_F(BoxObserver, ForcesOnTheFetusAreSplitAlongTheCanal) {
   seen.contact_force.assign(model.mesh.nodes.size(), Vec3::Zero());
-  seen.contact_force[0] = {0, 3, 10};                                // on the head from below: holds it up
-  seen.contact_force[model.mesh.nodes.size() - 1] = {0, 0, -60};     // on the trunk from above
+  seen.contact_force[0] = {0, 3, 10};                             // on the head from below: holds it up
+  seen.contact_force[model.mesh.nodes.size() - 1] = {0, 0, -60};  // on the trunk from above
   const auto v = observer.measure(moved(0, [](const Vec3& x) { return x; }), seen, nullptr);
   EXPECT_NEAR(value(v, "expulsive_force_n"), 60, 1e-12);
   EXPECT_NEAR(value(v, "axial_contact_force_n"), 50, 1e-12);

@@ -24,7 +24,8 @@ TEST(PenetrationCheck, GapAndDepthOfFlatBoxesAreExact) {
     const auto m = two_boxes(gap);
     const auto p = PenetrationCheck(m, 0.004).check(m.mesh.nodes).front();
     EXPECT_NEAR(p.least_gap, gap, 1e-15) << gap;
-    EXPECT_EQ(p.penetrated, gap < 0 ? 16 + 9 : 0) << gap;  // 4 x 4 lower nodes of the upper box, 3 x 3 upper ones of the lower
+    EXPECT_EQ(p.penetrated, gap < 0 ? 16 + 9 : 0)
+        << gap;  // 4 x 4 lower nodes of the upper box, 3 x 3 upper ones of the lower
   }
 }
 
@@ -40,7 +41,8 @@ TEST(PenetrationCheck, AgreesWithPlainBruteForce) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> jolt(-0.0004, 0.0004);
   for (auto& x : m.mesh.nodes) x += Vec3(jolt(random), jolt(random), jolt(random));
-  const double brute = mesh::least_gap(m.mesh.nodes, m.contact_surfaces[0].triangles, m.mesh.nodes, m.contact_surfaces[1].triangles);
+  const double brute =
+      mesh::least_gap(m.mesh.nodes, m.contact_surfaces[0].triangles, m.mesh.nodes, m.contact_surfaces[1].triangles);
   const auto p = PenetrationCheck(m, 0.004).check(m.mesh.nodes).front();
   ASSERT_EQ(p.penetrated, 0);
   EXPECT_NEAR(p.least_gap, brute, 1e-15);
@@ -65,7 +67,8 @@ TEST(PenetrationCheck, SelfContactIsSeenOnlyWhereTheBodyRunsIntoItself) {
 }
 
 TEST(PenetrationCheck, TheSmoothGapForgivesWhatFacetsCutOff) {
-  // A shaft of radius 20 mm that just fits its bore: facets of 16 sides stand off the circle by up to 0.38 mm, turned by half a side.
+  // A shaft of radius 20 mm that just fits its bore: facets of 16 sides stand off the circle by up to 0.38 mm, turned
+  // by half a side.
   fem::Model m;
   test::add_box(m, "shaft", "shaft", {0, -0.02, -0.02}, {0.04, 0.02, 0.02}, 4);
   test::add_box(m, "ring", "ring", {-0.03, 0, 0}, {0.07, 1, 1}, 16);
@@ -76,8 +79,9 @@ TEST(PenetrationCheck, TheSmoothGapForgivesWhatFacetsCutOff) {
     if (i < std::size_t(shaft_nodes)) {  // square to disc: rings of the square become circles
       const double r = std::max(std::abs(x.y()), std::abs(x.z()));
       if (r > 0) {
-        const double quarter = pi / 4, turn = std::abs(x.y()) >= std::abs(x.z()) ? (x.y() > 0 ? 0 : pi) + quarter * x.z() / x.y()
-                                                                                : (x.z() > 0 ? pi / 2 : -pi / 2) - quarter * x.y() / x.z();
+        const double quarter = pi / 4, turn = std::abs(x.y()) >= std::abs(x.z())
+                                                  ? (x.y() > 0 ? 0 : pi) + quarter * x.z() / x.y()
+                                                  : (x.z() > 0 ? pi / 2 : -pi / 2) - quarter * x.y() / x.z();
         x = {x.x(), r * std::cos(turn), r * std::sin(turn)};
       }
     } else {

@@ -40,7 +40,8 @@ TEST(BestFit, StretchIsNotTakenForTurning) {
   const auto rest = cloud(200);
   auto crushed = rest;
   for (auto& x : crushed) x = Vec3(0.9, 1.1, 1.0).asDiagonal() * x;
-  EXPECT_LT(rotation_vector(best_fit(rest, crushed, all(rest.size())).rotation).norm(), 0.02);  // the cloud is not quite symmetric
+  EXPECT_LT(rotation_vector(best_fit(rest, crushed, all(rest.size())).rotation).norm(),
+            0.02);  // the cloud is not quite symmetric
 }
 
 TEST(BestFit, FlatSetsStayProper) {

@@ -65,7 +65,8 @@ TEST(BirthRun, WritesTheWholeContract) {
   const Folder folder("contract");
   Case c;
   EXPECT_EQ(c.run(folder.path()), Outcome::born);
-  for (const char* file : {"scenario.resolved.yaml", "summary.json", "curves.csv", "frames.pvd", "frames/frame_0000.vtu", "checkpoint.h5", "events.jsonl"}) {
+  for (const char* file : {"scenario.resolved.yaml", "summary.json", "curves.csv", "frames.pvd",
+                           "frames/frame_0000.vtu", "checkpoint.h5", "events.jsonl"}) {
     EXPECT_TRUE(fs::exists(folder / file)) << file;
   }
   const auto j = nlohmann::json::parse(read_text(folder / "summary.json"));
@@ -117,7 +118,8 @@ TEST(BirthRun, KilledAfterLaterOutputsResumesToTheSameFiles) {
   Mover first(c.model);
   first.on_advance = [&](double t) { stop = t > 400; };
   ASSERT_EQ(c.run(folder / "killed", first), Outcome::interrupted);
-  // What kill -9 can leave behind: outputs after the checkpoint, torn lines, temporary files; the index names no torn frame.
+  // What kill -9 can leave behind: outputs after the checkpoint, torn lines, temporary files; the index names no torn
+  // frame.
   std::ofstream(folder / "killed/curves.csv", std::ios::app) << "420,1,2";
   std::ofstream(folder / "killed/events.jsonl", std::ios::app) << "{\"time_s\": 41";
   const auto frames = read_text(folder / "killed/frames.pvd");
@@ -154,7 +156,8 @@ TEST(BirthRun, ANumericalFailureKeepsTheLastGoodState) {
   EXPECT_EQ(j["outcome"], "failed");
   EXPECT_EQ(j["reason"], "inversion of element 7 (skull)");
   EXPECT_EQ(read_checkpoint(folder / "checkpoint.h5").state.time, mover.state().time);
-  EXPECT_NE(read_text(folder / "frames.pvd").find(fmt::format("timestep=\"{}\"", mover.state().time)), std::string::npos);
+  EXPECT_NE(read_text(folder / "frames.pvd").find(fmt::format("timestep=\"{}\"", mover.state().time)),
+            std::string::npos);
 }
 
 TEST(BirthRun, AFreshRunReplacesTheOld) {

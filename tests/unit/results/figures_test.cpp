@@ -20,14 +20,15 @@ labour::Contractions paper() {
 /// A head that goes 30 mm down in each contraction and comes 8 mm back in each rest; born when 180 mm down.
 observe::Table staircase() {
   observe::Table t;
-  t.names = {"time_s", "head_x_mm", "head_y_mm", "head_z_mm", "head_travel_mm", "head_speed_mm_s", "skull_past_vulva_mm", "widest_station_mm",
-             "uterus_length_mm", "sacrum_angle_deg"};
+  t.names = {"time_s",          "head_x_mm",           "head_y_mm",         "head_z_mm",        "head_travel_mm",
+             "head_speed_mm_s", "skull_past_vulva_mm", "widest_station_mm", "uterus_length_mm", "sacrum_angle_deg"};
   const auto c = paper();
   double z = 0, last = 0;
   for (double time = 0; time <= 1920; time += 2) {
     const double phase = std::fmod(time - c.first + c.period, c.period);
     if (time > c.first) z += phase <= 60 && phase > 0 ? 2 * 30.0 / 60 : -2 * 8.0 / 180;
-    const double angle = 4 * std::exp(-std::pow((time - 700) / 150, 2)) + 3 * std::exp(-std::pow((time - 1500) / 150, 2)) + 0.5 * time / 1920;
+    const double angle = 4 * std::exp(-std::pow((time - 700) / 150, 2)) +
+                         3 * std::exp(-std::pow((time - 1500) / 150, 2)) + 0.5 * time / 1920;
     t.rows.push_back({time, 0.01 * z, 0.3 * z, -z, z, (z - last) / 2, z - 180, z - 60, 230 - 0.8 * z, angle});
     last = z;
   }
@@ -37,7 +38,8 @@ observe::Table staircase() {
 TEST(Figures, ReadAStaircaseRightly) {
   const auto f = figures_of(staircase(), paper());
   ASSERT_TRUE(f.birth_time);
-  EXPECT_NEAR(*f.birth_time, 30 + 7 * 240 + 60 * (180 - 7 * 22.0) / 30, 2.5);  // 22 mm a period, the rest in the eighth contraction
+  EXPECT_NEAR(*f.birth_time, 30 + 7 * 240 + 60 * (180 - 7 * 22.0) / 30,
+              2.5);  // 22 mm a period, the rest in the eighth contraction
   EXPECT_EQ(f.contractions, 8);
   EXPECT_NEAR(f.descent_at_peaks.at(0), 30, 1.1);
   EXPECT_NEAR(f.descent_at_peaks.at(2), 74, 1.1);

@@ -112,12 +112,17 @@ TEST(CheckpointFile, RefusesWhatIsNotItsOwn) {
   EXPECT_EQ(message_of([&] { read_checkpoint(file); }),
             file.string() + ": no such file; nothing to resume; run without --resume to start");
   std::ofstream(file) << "not HDF5";
-  EXPECT_EQ(message_of([&] { read_checkpoint(file); }), file.string() + ": cannot be read; it is not a checkpoint of carus");
+  EXPECT_EQ(message_of([&] { read_checkpoint(file); }),
+            file.string() + ": cannot be read; it is not a checkpoint of carus");
   const auto c = sample();
   EXPECT_EQ(message_of([&] { refuse_foreign(file, c, "aaab", "bbbb"); }),
-            file.string() + ": was written for another scenario (aaaa against aaab); resume with the one in scenario.resolved.yaml, or run without --resume");
+            file.string() +
+                ": was written for another scenario (aaaa against aaab); resume with the one in "
+                "scenario.resolved.yaml, or run without --resume");
   EXPECT_EQ(message_of([&] { refuse_foreign(file, c, "aaaa", "cccc"); }),
-            file.string() + ": was written for another mesh (bbbb against cccc); resume with the one in scenario.resolved.yaml, or run without --resume");
+            file.string() +
+                ": was written for another mesh (bbbb against cccc); resume with the one in scenario.resolved.yaml, or "
+                "run without --resume");
   EXPECT_EQ(message_of([&] { refuse_foreign(file, c, "aaaa", "bbbb"); }), "(accepted)");
 }
 
@@ -139,8 +144,9 @@ TEST(Events, AreLinesOfJsonThatCanBeCutBack) {
   }
   Events resumed(folder / "e.jsonl", 1);
   resumed.add(3, "birth");
-  EXPECT_EQ(read_text(folder / "e.jsonl"),
-            "{\"time_s\": 1.000, \"event\": \"contraction\", \"number\": 1}\n{\"time_s\": 3.000, \"event\": \"birth\"}\n");
+  EXPECT_EQ(
+      read_text(folder / "e.jsonl"),
+      "{\"time_s\": 1.000, \"event\": \"contraction\", \"number\": 1}\n{\"time_s\": 3.000, \"event\": \"birth\"}\n");
 }
 
 }  // namespace

@@ -12,11 +12,12 @@
 
 namespace carus::test {
 
-/// A stand-in for a solver: the fetus sinks at a steady pace with a swing, and its state carries history in `internal`, so that a run
-/// resumed from anything less than the full state would differ.
+/// A stand-in for a solver: the fetus sinks at a steady pace with a swing, and its state carries history in `internal`,
+/// so that a run resumed from anything less than the full state would differ.
 class Mover final : public results::Engine {
  public:
-  explicit Mover(const fem::Model& model, double descent = 0.4, double fails_at = 1e9) : model_(model), descent_(descent), fails_at_(fails_at) {
+  explicit Mover(const fem::Model& model, double descent = 0.4, double fails_at = 1e9)
+      : model_(model), descent_(descent), fails_at_(fails_at) {
     state_.x = model.mesh.nodes;
     state_.v.assign(state_.x.size(), Vec3(0, 0, -descent_));
     state_.internal = {0.1};
@@ -28,7 +29,8 @@ class Mover final : public results::Engine {
       ++state_.step;
       state_.time = double(state_.step) * step_;
       state_.internal[0] = std::fmod(3.7 * state_.internal[0] + 0.01, 1.0);
-      for (auto& x : state_.x) x += Vec3(0, 1e-7 * state_.internal[0], -descent_ * step_ / 1920 + 1e-5 * (state_.internal[0] - 0.5));
+      for (auto& x : state_.x)
+        x += Vec3(0, 1e-7 * state_.internal[0], -descent_ * step_ / 1920 + 1e-5 * (state_.internal[0] - 0.5));
     }
     if (on_advance) on_advance(state_.time);
   }
@@ -47,13 +49,15 @@ class Mover final : public results::Engine {
 };
 
 inline scenario::Scenario quick_scenario() {
-  return scenario::parse("output: {frames: 8, curve_interval: 60 s}\n", std::filesystem::path(CARUS_SOURCE_DIR) / "scenarios" / "test.yaml");
+  return scenario::parse("output: {frames: 8, curve_interval: 60 s}\n",
+                         std::filesystem::path(CARUS_SOURCE_DIR) / "scenarios" / "test.yaml");
 }
 
 /// A folder of its own for one test, removed with it.
 class Folder {
  public:
-  explicit Folder(const std::string& name) : path_(std::filesystem::temp_directory_path() / ("carus_" + name + "_" + std::to_string(getpid()))) {
+  explicit Folder(const std::string& name)
+      : path_(std::filesystem::temp_directory_path() / ("carus_" + name + "_" + std::to_string(getpid()))) {
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }

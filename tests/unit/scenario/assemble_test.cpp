@@ -246,10 +246,10 @@ TEST(Assemble, CoccyxHingesBendsOrIsFixed) {
 }
 
 TEST(Assemble, TiesShareOutTheTotalStiffness) {
-  const Assembly out = assemble(
-      scenario({"attachments.lower_uterus_tie.axial=12 kN/m", "attachments.lower_uterus_tie.transverse=3 N/mm",
-                "attachments.canal_bed.posterior=0 Pa/m", "attachments.canal_bed.lateral=0 Pa/m"}),
-      small_anatomy());
+  const Assembly out =
+      assemble(scenario({"attachments.lower_uterus_tie.axial=12 kN/m", "attachments.lower_uterus_tie.transverse=3 N/mm",
+                         "attachments.canal_bed.posterior=0 Pa/m", "attachments.canal_bed.lateral=0 Pa/m"}),
+               small_anatomy());
   Vec3 sum = Vec3::Zero();
   for (const fem::Tether& t : out.model.tethers) {
     EXPECT_GT(t.stiffness.minCoeff(), 0);
@@ -301,9 +301,8 @@ TEST(Assemble, ContactPairsAreThePapersAndTheFold) {
     pairs.insert(surfaces.at(p.a).name + "-" + surfaces.at(p.b).name);
     EXPECT_EQ(p.friction, 0.05);
   }
-  EXPECT_EQ(pairs,
-            (std::set<std::string>{"skin-uterus", "uterus-cavity", "uterus-bone",
-                                   "uterus-coccyx", "uterus-uterus", "skin-cavity", "skin-bone", "skin-coccyx"}));
+  EXPECT_EQ(pairs, (std::set<std::string>{"skin-uterus", "uterus-cavity", "uterus-bone", "uterus-coccyx",
+                                          "uterus-uterus", "skin-cavity", "skin-bone", "skin-coccyx"}));
   // No facet of the abdomen belongs to two surfaces, and what touches of a bone is bare.
   std::set<mesh::Triangle> seen;
   for (const auto& s : surfaces)
