@@ -71,8 +71,9 @@ TEST(Birth, CoarseReferenceMeetsItsBands) {
       << text(out.string() + ".log");
   const auto s = nlohmann::json::parse(text(out / "summary.json"));
   std::printf("%s\n", s.dump().substr(0, 1500).c_str());
-  // The bands of docs/theory/reference_birth.md that the reference meets, 10 % wider where facets of 14 mm measure. What it
-  // misses (recession in three rests, internal rotation before crowning, penetration, ...) is told there and not tested here.
+  // The bands of docs/theory/reference_birth.md that the reference meets, 10 % wider where facets of 14 mm measure.
+  // What it misses (recession in three rests, internal rotation before crowning, penetration, ...) is told there and
+  // not tested here.
   EXPECT_EQ(s.at("outcome"), "born");
   EXPECT_GE(s.at("contractions").get<int>(), 5);
   EXPECT_LE(s.at("contractions").get<int>(), 11);

@@ -46,9 +46,8 @@ Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const s
     if (p.a != p.b) add(p.b, p.a, p.friction);
   }
   for (const Surface& s : surfaces_) {
-    moves_.push_back(std::any_of(s.nodes.begin(), s.nodes.end(), [&](std::int32_t n) {
-      return hinge_of_node_[n] >= 0 || !inverse_mass_[n].isZero();
-    }));
+    moves_.push_back(std::any_of(s.nodes.begin(), s.nodes.end(),
+                                 [&](std::int32_t n) { return hinge_of_node_[n] >= 0 || !inverse_mass_[n].isZero(); }));
   }
   chunk_constraints_.resize((probes_.size() + probe_chunk - 1) / probe_chunk);
 }
