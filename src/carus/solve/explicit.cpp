@@ -462,6 +462,15 @@ void Explicit::advance_to(double time) {
 }
 
 void Explicit::restore(const fem::State& state) {
+  const fem::State& own = impl_->good;
+  if (state.x.size() != own.x.size() || state.v.size() != own.v.size() ||
+      state.internal.size() != own.internal.size() || state.rest_length.size() != own.rest_length.size() ||
+      state.hinge_angle.size() != own.hinge_angle.size())
+    throw InputError(
+        fmt::format("the state to restore is of another model: {} nodes and {} internal values, this model has {} and "
+                    "{}; hint: mesh and scenario must "
+                    "be those it was saved with",
+                    state.x.size(), state.internal.size(), own.x.size(), own.internal.size()));
   impl_->state = state;
   impl_->restore_private();
   impl_->good = impl_->state, impl_->good_work = impl_->work;
