@@ -6,21 +6,19 @@
 
 namespace carus::anatomy {
 
-/// The abdomen with pelvic floor and bones as one labelled solid.
+/// The abdomen with the bones as one labelled solid.
 ///
 ///     above the inlet   a wall of soft tissue round the uterus, standing on the iliac wings and the brim
 ///     within the ring   bone is bare: the cavity reaches from the uterus to the bone, no tissue to be crushed between
 ///     hips              tissue on the outer side of the innominate bones, in the obturator foramina
-///     pelvic floor      behind and beside the end of the canal: levator sheet, perineal body, soft tissue, slung from
-///     ischium to ischium;
-///                       none in front (the bend's inner side), none where the coccyx rocks
+///
+/// The pelvic floor round the canal's end is meshed with the canal, see PelvicFloor.
 class Abdomen {
  public:
   Abdomen(const Parameters& p, const Uterus& uterus, const Pelvis& pelvis);
   [[nodiscard]] std::int32_t label(const Vec3& x) const;
   [[nodiscard]] double cavity(const Vec3& x) const;  ///< distance to the cavity's wall, negative within [m]
   [[nodiscard]] double outer_wall(double z) const;   ///< how far from the uterus the trunk reaches at this height [m]
-  static constexpr double floor_height = 0.022;      ///< of the pelvic floor along the canal [m]
 
  private:
   [[nodiscard]] std::int32_t tissue(const Vec3& x, double from_uterus) const;

@@ -18,10 +18,10 @@ enum Label : std::int32_t {
   uterine_fundus = 11,
   uterine_body = 12,
   lower_segment = 13,
-  vaginal_canal = 14,  // body "uterus"
-  abdomen = 21,
+  vaginal_canal = 14,
   levator_ani = 22,
-  perineal_body = 23,  // body "abdomen", with the bones
+  perineal_body = 23,  // body "uterus": the floor is grown together with the canal
+  abdomen = 21,        // body "abdomen", with the bones
   innominate_right = 31,
   innominate_left = 32,
   sacrum = 33,
@@ -40,7 +40,11 @@ struct PelvisParameters {
   double spines_depth = 0.060;  ///< of the ischial spines below the inlet, along -z
 };
 struct CanalParameters {
-  double radius = 0.046;       ///< inner radius at full dilatation (calibrated)
+  double radius = 0.046;       ///< inner radius where the cervix is fully dilated: the upper canal (calibrated)
+  double vulva_radius = 0.020;   ///< inner radius at the vulva, which the head stretches
+  double taper_start = 0.030;    ///< s [m] from which the canal narrows down to the vulva
+  double taper_forward = 0.7;    ///< 0: it narrows evenly; 1: from behind only, its front stays where it is
+  double floor_top = 0.060;      ///< s [m] where the pelvic floor begins
   double bend_radius = 0.080;  ///< radius of the axis' arc round the symphysis
   double bend_start = -0.045;  ///< z at which the straight part ends
   double bend_angle = 0.87;    ///< rad, where the canal ends at the vulva
@@ -52,7 +56,7 @@ struct UterusParameters {
 struct AbdomenParameters {
   double wall = 0.030;  ///< thickness of the trunk round the uterus
   double gap = 0.0008;  ///< cavity to uterus at the start
-  double levator_thickness = 0.006, hiatus_length = 0.060, perineal_body_thickness = 0.030;
+  double levator_thickness = 0.006, perineal_body_thickness = 0.030;
 };
 struct FetusParameters {
   double biparietal = 0.0935, occipitofrontal = 0.116, suboccipitobregmatic = 0.095;
@@ -83,6 +87,10 @@ class CanalAxis {
   [[nodiscard]] Vec3 point(double s) const;
   [[nodiscard]] Vec3 tangent(double s) const;         ///< unit, towards the vulva
   [[nodiscard]] double nearest(const Vec3& x) const;  ///< s of the nearest point
+  /// Inner radius of the canal at rest [m]: constant down to taper_start, then smoothly to that of the vulva.
+  [[nodiscard]] double radius(double s) const;
+  /// Centre of the canal at rest: before the axis by taper_forward of what it has narrowed.
+  [[nodiscard]] Vec3 centre(double s) const;
   [[nodiscard]] double vulva() const { return -p_.bend_start + p_.bend_radius * p_.bend_angle; }
 
  private:

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "carus/anatomy/shapes.hpp"
+
 namespace carus::anatomy {
 
 Vec3 CanalAxis::point(double s) const {
@@ -24,6 +26,15 @@ double CanalAxis::nearest(const Vec3& x) const {
   const double angle = std::atan2(p_.bend_start - x.z(), p_.bend_radius - x.y());
   if (angle <= p_.bend_angle) return -p_.bend_start + p_.bend_radius * angle;
   return vulva() + std::max((x - point(vulva())).dot(tangent(vulva())), 0.0);
+}
+
+double CanalAxis::radius(double s) const {
+  return p_.radius + (p_.vulva_radius - p_.radius) * smooth_step(p_.taper_start, vulva(), s);
+}
+
+Vec3 CanalAxis::centre(double s) const {
+  const Vec3 t = tangent(s);
+  return point(s) + p_.taper_forward * (p_.radius - radius(s)) * Vec3(0, -t.z(), t.y());
 }
 
 CanalCoordinates canal_coordinates(const CanalAxis& axis, const Vec3& x) {

@@ -200,7 +200,7 @@ std::map<std::string, Vec3> Pelvis::landmarks() const {
           {"sacrum_tip", mid(sacral_tip_)},
           {"coccyx_tip", mid(coccyx_tip_)},
           {"coccyx_hinge", mid(hinge)},
-          {"vulva_centre", axis_.point(axis_.vulva())},
+          {"vulva_centre", axis_.centre(axis_.vulva())},
           {"vulva_normal", axis_.tangent(axis_.vulva())}};
 }
 

@@ -19,7 +19,7 @@ SampledField inner_field(const Parameters& p, const CanalAxis& axis, const Fetus
   const auto f = [&](const Vec3& x) {
     const auto c = canal_coordinates(axis, x);
     const double above = std::max(tube_start - c.s, 0.0);
-    const double tube = std::hypot(c.lateral, c.front, above) - p.canal.radius;
+    const double tube = std::hypot((x - axis.centre(c.s)).norm(), above) - axis.radius(c.s);
     return smooth_union(fetus.bag(x) - p.uterus.gap, tube, fillet);
   };
   const double half = std::max(p.fetus.shoulder_width / 2, p.canal.radius) + p.uterus.gap + p.uterus.wall_body + reach;

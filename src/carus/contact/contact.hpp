@@ -71,11 +71,13 @@ struct Constraint {
 ///
 /// Order of calls in a step: `detect` with the positions at its start, `solve` on the predicted velocities.
 /// Deterministic and independent of the number of threads.
+/// The inverse mass of a node is D - b b^T: D by axes (`inverse_mass`), b (`inverse_mass_blocked`) takes away a direction
+/// in which it cannot move.
 class Contact {
  public:
   Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest,
-          std::vector<Vec3> inverse_mass, std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges,
-          const Options& options);
+          std::vector<Vec3> inverse_mass, std::vector<Vec3> inverse_mass_blocked,
+          std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges, const Options& options);
 
   /// Finds the active constraints. `max_speed` bounds every nodal speed in this step [m/s].
   void detect(const std::vector<Vec3>& x, double dt, double max_speed);
@@ -117,12 +119,16 @@ class Contact {
   Vec3 follow(Probe& probe, const std::vector<Vec3>& x) const;  ///< weights of the foot on the facet it ends at
   bool admissible(const Probe& probe, std::int32_t triangle) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c) const;
+  [[nodiscard]] Vec3 response(std::int32_t node, const Vec3& impulse) const {
+    const Vec3& b = inverse_mass_blocked_[node];
+    return inverse_mass_[node].cwiseProduct(impulse) - b.dot(impulse) * b;
+  }
   void finish(Constraint& c, const std::vector<Vec3>& x) const;
   void apply(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v, std::vector<double>& rate) const;
 
   std::vector<Surface> surfaces_;
   std::vector<Pair> pairs_;
-  std::vector<Vec3> rest_, inverse_mass_;
+  std::vector<Vec3> rest_, inverse_mass_, inverse_mass_blocked_;
   std::vector<std::int16_t> hinge_of_node_;
   std::vector<HingeBody> hinges_;
   Options options_;

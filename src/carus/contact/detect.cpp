@@ -22,12 +22,13 @@ Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3
 }  // namespace
 
 Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest,
-                 std::vector<Vec3> inverse_mass, std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges,
-                 const Options& options)
+                 std::vector<Vec3> inverse_mass, std::vector<Vec3> inverse_mass_blocked,
+                 std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges, const Options& options)
     : surfaces_(std::move(surfaces)),
       pairs_(std::move(pairs)),
       rest_(rest),
       inverse_mass_(std::move(inverse_mass)),
+      inverse_mass_blocked_(std::move(inverse_mass_blocked)),
       hinge_of_node_(std::move(hinge_of_node)),
       hinges_(std::move(hinges)),
       options_(options),
@@ -183,9 +184,8 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
 
 /// Effective mass 1 / (n.M^-1 n + sum w_k^2 n.M_k^-1 n + hinges).
 void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {
-  const Vec3 n2 = c.n.cwiseProduct(c.n);
-  double inverse = n2.dot(inverse_mass_[c.node]);
-  for (int k = 0; k < 3; ++k) inverse += c.w[k] * c.w[k] * n2.dot(inverse_mass_[c.facet[k]]);
+  double inverse = c.n.dot(response(c.node, c.n));
+  for (int k = 0; k < 3; ++k) inverse += c.w[k] * c.w[k] * c.n.dot(response(c.facet[k], c.n));
   const auto lever = [&](std::int16_t h) {
     return h < 0 ? 0.0 : hinges_[h].axis.dot((x[c.node] - hinges_[h].point).cross(c.n));
   };

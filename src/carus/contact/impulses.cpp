@@ -7,8 +7,8 @@ namespace carus::contact {
 
 /// The impulse acts on the node, its opposite on the facet.
 void Contact::apply(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v, std::vector<double>& rate) const {
-  v[c.node] += inverse_mass_[c.node].cwiseProduct(impulse);
-  for (int k = 0; k < 3; ++k) v[c.facet[k]] -= c.w[k] * inverse_mass_[c.facet[k]].cwiseProduct(impulse);
+  v[c.node] += response(c.node, impulse);
+  for (int k = 0; k < 3; ++k) v[c.facet[k]] -= c.w[k] * response(c.facet[k], impulse);
   const double along = impulse.dot(c.n);
   if (c.hinge_node >= 0) rate[c.hinge_node] += hinges_[c.hinge_node].inverse_inertia * c.lever_node * along;
   if (c.hinge_facet >= 0) rate[c.hinge_facet] -= hinges_[c.hinge_facet].inverse_inertia * c.lever_facet * along;

@@ -32,10 +32,11 @@ struct Hinge {
   double inertia;    ///< [kg m^2]
 };
 
-/// Nodes held to their rest position by springs, e.g. ligaments: force = -k (x - X) per node, by axis.
+/// A spring that holds a node to its rest position along a direction, e.g. a ligament: force = -k d (d.(x - X)).
 struct Tether {
   std::int32_t node;
-  Vec3 stiffness;  ///< [N/m]
+  Vec3 direction;    ///< unit
+  double stiffness;  ///< [N/m]
 };
 
 /// A pressure on a surface, by labour time.
@@ -77,7 +78,8 @@ struct Retraction {
 struct Model {
   mesh::TetMesh mesh;  ///< all bodies; labels are indices into `regions`
   std::vector<Region> regions;
-  std::vector<std::uint8_t> blocked;  ///< per node, Blocked bits
+  std::vector<std::uint8_t> blocked;    ///< per node, Blocked bits
+  std::vector<Vec3> blocked_direction;  ///< per node or empty: unit, no motion along it (zero: none)
   std::vector<Vec3> fibre;            ///< per element or empty
   std::vector<Hinge> hinges;
   std::vector<Tether> tethers;

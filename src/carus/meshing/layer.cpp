@@ -29,14 +29,16 @@ std::array<mesh::Tet, 3> split(std::int32_t a, std::int32_t b, std::int32_t c, s
 
 }  // namespace
 
-void add_layer(mesh::TetMesh& m, const mesh::Triangles& surface, const Outward& outward,
+mesh::Triangles add_layer(mesh::TetMesh& m, const mesh::Triangles& surface, const Outward& outward,
                const std::function<std::int32_t(const Vec3&)>& label) {
   std::unordered_map<std::int32_t, std::int32_t> copy;
   for (const auto i : mesh::nodes_of(surface)) {
     copy[i] = static_cast<std::int32_t>(m.nodes.size());
     m.nodes.push_back(outward(m.nodes[i]));
   }
+  mesh::Triangles outer;
   for (auto t : surface) {
+    outer.push_back({copy[t[0]], copy[t[1]], copy[t[2]]});
     std::rotate(t.begin(),
                 std::min_element(t.begin(), t.end(), [](auto i, auto j) { return scrambled(i) < scrambled(j); }),
                 t.end());
@@ -52,6 +54,7 @@ void add_layer(mesh::TetMesh& m, const mesh::Triangles& surface, const Outward& 
             label(centre), centre.x() * 1e3, centre.y() * 1e3, centre.z() * 1e3));
     }
   }
+  return outer;
 }
 
 }  // namespace carus::meshing

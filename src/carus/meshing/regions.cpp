@@ -66,7 +66,7 @@ std::vector<std::int32_t> best_node(const mesh::TetMesh& m, const std::vector<st
 }
 
 constexpr double tie_low = 0.010, tie_high = 0.032;  // z of the ring where the lower uterus hangs on the pelvis [m]
-constexpr double buttocks_depth = 0.020;  // from the canal [m]: the far side of the pelvic floor, not its ends
+constexpr double hiatus_height = 0.020;  // above the vulva [m]
 constexpr double on_plane = 0.0015;       // [m]
 
 }  // namespace
@@ -84,10 +84,13 @@ void name_uterus(Body& body, const anatomy::Uterus& uterus) {
   const auto rim = [&](const Facet& f) {
     return (f.centre - end).dot(end_normal) > -on_plane && f.normal.dot(end_normal) > 0.7;
   };
-  const auto outward = [&](const Facet& f) { return f.normal.dot(uterus.frame(f.centre).normal) > 0; };
-  const auto inner = select(m, skin, [&](const Facet& f) { return !rim(f) && !outward(f); });
-  const auto outer = select(m, skin, [&](const Facet& f) { return !rim(f) && outward(f); });
-  const auto muscle = owned(m, outer, [](std::int32_t l) { return l != anatomy::vaginal_canal; });
+  const auto inwards = [&](const Facet& f) {
+    return f.normal.dot(uterus.frame(f.centre).normal) < 0 &&
+           uterus.inner_distance(f.centre) < 0.5 * uterus.thickness(f.centre);
+  };
+  const auto inner = select(m, skin, [&](const Facet& f) { return !rim(f) && inwards(f); });
+  const auto outer = select(m, skin, [&](const Facet& f) { return !rim(f) && !inwards(f); });
+  const auto muscle = owned(m, outer, [](std::int32_t l) { return l < anatomy::vaginal_canal; });
   const auto upper =
       owned(m, outer, [](std::int32_t l) { return l == anatomy::uterine_fundus || l == anatomy::uterine_body; });
   body.surfaces.push_back({"inner", inner});
@@ -101,7 +104,19 @@ void name_uterus(Body& body, const anatomy::Uterus& uterus) {
   body.nodes.push_back({"lower_uterus_tie", nodes_where(m, outer_nodes, [](const Vec3& x) {
                           return x.z() > tie_low && x.z() < tie_high;
                         })});
-  body.nodes.push_back({"vulva", mesh::nodes_of(select(m, skin, rim))});
+  const auto inner_nodes = mesh::nodes_of(inner), rim_nodes = mesh::nodes_of(select(m, skin, rim));
+  std::vector<std::int32_t> vulva;  // its inner edge: the opening itself
+  std::set_intersection(inner_nodes.begin(), inner_nodes.end(), rim_nodes.begin(), rim_nodes.end(),
+                        std::back_inserter(vulva));
+  body.nodes.push_back({"vulva", vulva});
+  body.surfaces.push_back({"vulva", select(m, skin, rim)});
+  body.nodes.push_back({"bed", nodes_where(m, outer_nodes, [](const Vec3& x) { return x.z() < 0; })});
+  const auto canal = nodes_of_label(m, anatomy::vaginal_canal), sheet = nodes_of_label(m, anatomy::levator_ani);
+  std::vector<std::int32_t> hiatus;  // where the levator lies on the canal, at the vulva's level
+  std::set_intersection(canal.begin(), canal.end(), sheet.begin(), sheet.end(), std::back_inserter(hiatus));
+  body.nodes.push_back({"hiatus", nodes_where(m, hiatus, [&](const Vec3& x) {
+                          return axis.nearest(x) > axis.vulva() - hiatus_height;
+                        })});
   body.nodes.push_back(
       {"point_fundus", best_node(m, outer_nodes, [](const Vec3& x) { return x.z() - 0.1 * x.head<2>().norm(); })});
   const auto lower = nodes_where(m, outer_nodes, [](const Vec3& x) { return x.z() > 0.005 && x.z() < 0.035; });
@@ -116,17 +131,11 @@ void name_uterus(Body& body, const anatomy::Uterus& uterus) {
                           })});
 }
 
-void name_abdomen(Body& body, const anatomy::Abdomen& abdomen, const anatomy::Uterus& uterus,
-                  const anatomy::Pelvis& pelvis) {
+void name_abdomen(Body& body, const anatomy::Abdomen& abdomen, const anatomy::Uterus& uterus) {
   const auto& m = body.mesh;
   const auto skin = mesh::boundary(m);
   const auto soft = [](std::int32_t l) { return l < anatomy::innominate_right; };
   const auto bare_soft = owned(m, skin, soft);
-  const auto& axis = pelvis.axis();
-  const Vec3 end = axis.point(axis.vulva()), end_normal = axis.tangent(axis.vulva());
-  const auto at_vulva = [&](const Facet& f) {
-    return std::abs((f.centre - end).dot(end_normal)) < on_plane && f.normal.dot(end_normal) > 0.7;
-  };
   const auto inwards = [&](const Facet& f) {
     // Facing the cavity: close to its wall, and the distance to it falls along the outward normal.
     constexpr double e = 0.001;
@@ -137,16 +146,10 @@ void name_abdomen(Body& body, const anatomy::Abdomen& abdomen, const anatomy::Ut
   body.surfaces.push_back({"cavity", cavity});
   body.surfaces.push_back({"bone", owned(m, skin, [&](std::int32_t l) { return !soft(l) && l != anatomy::coccyx; })});
   body.surfaces.push_back({"coccyx", owned(m, skin, [](std::int32_t l) { return l == anatomy::coccyx; })});
-  body.surfaces.push_back({"vulva", select(m, bare_soft, at_vulva)});
-  const auto is_outer = [&](const Facet& f) { return !inwards(f) && !at_vulva(f); };
+  const auto is_outer = [&](const Facet& f) { return !inwards(f); };
   const auto outer = select(m, bare_soft, is_outer);
   const auto front = select(m, outer, [](const Facet& f) { return f.centre.z() > 0.002 && f.normal.y() > 0.3; });
-  // The birth chair holds the back and, below the sacrum, the buttocks: the far side of the pelvic floor.
-  const auto back = select(m, outer, [&](const Facet& f) {
-    if (f.centre.z() > 0.002) return f.normal.y() < -0.5;
-    return pelvis.axis().nearest(f.centre) > axis.vulva() - anatomy::Abdomen::floor_height &&
-           uterus.outer_distance(f.centre) > buttocks_depth;
-  });
+  const auto back = select(m, outer, [](const Facet& f) { return f.centre.z() > 0.002 && f.normal.y() < -0.5; });
   const auto thighs = select(m, outer, [&](const Facet& f) {
     return f.centre.z() < -0.002 && std::abs(f.centre.x()) > 0.06 && uterus.outer_distance(f.centre) > 0.02;
   });
@@ -157,11 +160,9 @@ void name_abdomen(Body& body, const anatomy::Abdomen& abdomen, const anatomy::Ut
   body.nodes.push_back({"front", mesh::nodes_of(front)});
   body.nodes.push_back({"back", mesh::nodes_of(back)});
   body.nodes.push_back({"thighs", mesh::nodes_of(thighs)});
-  body.nodes.push_back({"vulva", mesh::nodes_of(select(m, bare_soft, at_vulva))});
   const auto on_cavity = mesh::nodes_of(cavity);
   body.nodes.push_back({"canal", nodes_where(m, on_cavity, [](const Vec3& x) { return x.z() < 0; })});
-  for (const auto label : {anatomy::innominate_right, anatomy::innominate_left, anatomy::sacrum, anatomy::coccyx,
-                           anatomy::levator_ani, anatomy::perineal_body})
+  for (const auto label : {anatomy::innominate_right, anatomy::innominate_left, anatomy::sacrum, anatomy::coccyx})
     body.nodes.push_back({anatomy::name_of(label), nodes_of_label(m, label)});
 }
 

@@ -8,7 +8,6 @@ namespace carus::meshing {
 /// Names on the meshed bodies: surfaces and nodes that loads, supports and measurements ask for.
 void name_fetus(anatomy::Body& body);
 void name_uterus(anatomy::Body& body, const anatomy::Uterus& uterus);
-void name_abdomen(anatomy::Body& body, const anatomy::Abdomen& abdomen, const anatomy::Uterus& uterus,
-                  const anatomy::Pelvis& pelvis);
+void name_abdomen(anatomy::Body& body, const anatomy::Abdomen& abdomen, const anatomy::Uterus& uterus);
 
 }  // namespace carus::meshing

@@ -12,6 +12,7 @@ namespace {
 
 /// Rings stand closer than the edge: equilateral rows at 0.87, and the outer side of the bend stretches them.
 constexpr double row = 0.80;
+constexpr int perineal_layers = 3;
 constexpr double search = 0.25;  // [m] the wall's inner face lies nearer to the axis than this
 
 /// The inner face along a ray from within.
@@ -24,6 +25,15 @@ Vec3 on_inner(const anatomy::Uterus& uterus, const Vec3& from, const Vec3& direc
     (uterus.inner_distance(from + mid * direction) < 0 ? low : high) = mid;
   }
   return from + low * direction;
+}
+
+/// The facets whose centre `keep` selects.
+template <class Keep>
+mesh::Triangles part(const mesh::TetMesh& m, const mesh::Triangles& from, Keep keep) {
+  mesh::Triangles result;
+  for (const auto& t : from)
+    if (keep(Vec3((m.nodes[t[0]] + m.nodes[t[1]] + m.nodes[t[2]]) / 3))) result.push_back(t);
+  return result;
 }
 
 struct Ring {
@@ -51,7 +61,8 @@ void zip(const Ring& upper, const Ring& lower, mesh::Triangles& out) {
 
 }  // namespace
 
-mesh::TetMesh mesh_wall(const anatomy::Uterus& uterus, double h) {
+mesh::TetMesh mesh_wall(const anatomy::Uterus& uterus, const anatomy::PelvicFloor& floor, double levator_thickness,
+                        double h) {
   const auto& axis = uterus.axis();
   const double top = -uterus.fundus_z(), end = axis.vulva();
   const double radius = (on_inner(uterus, axis.point(0), Vec3::UnitX()) - axis.point(0)).norm();
@@ -82,7 +93,7 @@ mesh::TetMesh mesh_wall(const anatomy::Uterus& uterus, double h) {
     const double s = top + (end - top) * k / tube;
     const Vec3 t = axis.tangent(s), front(0, -t.z(), t.y());
     add_ring(around, [&](double a) {
-      return on_inner(uterus, axis.point(s), std::cos(a) * Vec3::UnitX() + std::sin(a) * front);
+      return on_inner(uterus, axis.centre(s), std::cos(a) * Vec3::UnitX() + std::sin(a) * front);
     });
   }
 
@@ -96,7 +107,16 @@ mesh::TetMesh mesh_wall(const anatomy::Uterus& uterus, double h) {
     if (std::abs((x - last).dot(plane)) < 1e-9) n = (n - n.dot(plane) * plane).normalized();  // the end stays plane
     return x + uterus.thickness(x) * n;
   };
-  add_layer(m, surface, outward, [&](const Vec3& x) { return uterus.region(x); });
+  const auto outer = add_layer(m, surface, outward, [&](const Vec3& x) { return uterus.region(x); });
+  const auto sheet = add_layer(
+      m, part(m, outer, [&](const Vec3& x) { return floor.levator(x); }),
+      [&](const Vec3& x) { return Vec3(x + levator_thickness * floor.outward(x)); },
+      [](const Vec3&) { return anatomy::levator_ani; });
+  auto face = part(m, sheet, [&](const Vec3& x) { return floor.perineum(x); });
+  for (int k = 0; k < perineal_layers; ++k)
+    face = add_layer(
+        m, face, [&](const Vec3& x) { return Vec3(x + floor.perineal_thickness(x) / perineal_layers * floor.outward(x)); },
+        [](const Vec3&) { return anatomy::perineal_body; });
   return m;
 }
 

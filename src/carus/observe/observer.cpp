@@ -71,6 +71,7 @@ struct Observer::Impl {
     find_frames();
     add_head();
     add_passage();
+    add_occiput();
     add_attitude();
     add_shapes();
     add_loads();
@@ -169,6 +170,17 @@ struct Observer::Impl {
         [this](const Moment& m) { return per_mm * least_height(m.state.x, skull, vulva, vulva_normal); });
     add("fetus_past_vulva_mm",
         [this](const Moment& m) { return per_mm * least_height(m.state.x, fetus, vulva, vulva_normal); });
+  }
+
+  /// How far the occiput has come below the lower edge of the symphysis, along the canal there: what it pivots under.
+  void add_occiput() {
+    const auto it = setup.landmarks.find("symphysis_bottom");
+    if (it == setup.landmarks.end()) return;
+    const Vec3 edge = it->second, down = setup.canal_tangent(setup.canal_nearest(edge));
+    add("occiput_below_symphysis_mm", [=, occiput = setup.landmarks.at("occiput")](const Moment& m) {
+      const Vec3 now = m.head.centre + m.head.rotation * (occiput - m.head.rest_centre);
+      return per_mm * (now - edge).dot(down);
+    });
   }
 
   void add_attitude() {

@@ -76,7 +76,9 @@ std::vector<Band> bands_of(const Figures& f, const labour::Contractions& c) {
        std::abs(f.occiput_at_crowning) <= 20);
   band(10, "internal rotation", "45-90 deg", "cardinal movements", number(std::abs(f.rotation_at_crowning), " deg"),
        within(std::abs(f.rotation_at_crowning), 45, 90));
-  band(10, "extension at birth", ">= 10 deg", "cardinal movements", number(f.extension, " deg"), f.extension >= 10);
+  band(10, "extension until birth", ">= 10 deg", "cardinal movements", number(f.extension, " deg"), f.extension >= 10);
+  band(10, "extension passes 10 deg", "occiput below the lower symphysis", "cardinal movements",
+       number(f.occiput_at_extension, " mm below"), f.occiput_at_extension > 0);
   return bands;
 }
 

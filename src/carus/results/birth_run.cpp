@@ -233,7 +233,7 @@ observe::Setup observer_setup(const scenario::Scenario& s, const scenario::Assem
                               const anatomy::Anatomy& anatomy) {
   observe::Setup setup;
   setup.landmarks = anatomy.landmarks;
-  for (const char* name : {"point_fundus", "point_lower", "point_left", "point_right", "vulva"}) {
+  for (const char* name : {"point_fundus", "point_lower", "point_left", "point_right", "vulva", "hiatus"}) {
     if (const auto it = assembly.node_sets.find(std::string("uterus.") + name);
         it != assembly.node_sets.end() && !it->second.empty()) {
       setup.nodes[name] = it->second;
@@ -244,19 +244,6 @@ observe::Setup observer_setup(const scenario::Scenario& s, const scenario::Assem
   }
   setup.head_regions = {"skull"};
   setup.trunk_regions = {"fetal_body"};
-  // The levator's hiatus is where its sheet meets the cavity that the canal passes through.
-  if (const auto cavity = assembly.surfaces.find("abdomen.cavity"); cavity != assembly.surfaces.end()) {
-    std::vector<bool> levator(assembly.model.mesh.nodes.size(), false);
-    for (std::size_t e = 0; e < assembly.model.mesh.tets.size(); ++e) {
-      if (assembly.model.regions[assembly.model.mesh.labels[e]].name != "levator_ani") continue;
-      for (const auto n : assembly.model.mesh.tets[e]) levator[n] = true;
-    }
-    auto& hiatus = setup.nodes["hiatus"];
-    for (const auto n : mesh::nodes_of(cavity->second)) {
-      if (levator[n]) hiatus.push_back(n);
-    }
-    if (hiatus.empty()) setup.nodes.erase("hiatus");
-  }
   const anatomy::CanalAxis axis(anatomy.parameters.canal);
   setup.canal_nearest = [axis](const Vec3& x) { return axis.nearest(x); };
   setup.canal_tangent = [axis](double along) { return axis.tangent(along); };

@@ -24,6 +24,8 @@ class Columns {
   const Table& table_;
 };
 
+constexpr double extended = 10;  // [deg] less is the give of the neck in a push
+
 double largest(const Values& v, std::size_t n) {
   return n == 0 ? 0 : *std::max_element(v.begin(), v.begin() + std::ptrdiff_t(n));
 }
@@ -112,7 +114,7 @@ void sacrum_figures(Figures& f, const Columns& column, const labour::Contraction
 
 void rotation_figures(Figures& f, const Columns& column, std::size_t n) {
   const auto occiput = column("occiput_deg"), turn = column("internal_rotation_deg"),
-             flexion = column("flexion_to_canal_deg"), trunk = column("trunk_rotation_deg"),
+             flexion = column("flexion_to_trunk_deg"), occiput_low = column("occiput_below_symphysis_mm"), trunk = column("trunk_rotation_deg"),
              station = column("station_mm");
   const auto* crowning = find(f.milestones, "crowning");
   const auto at = crowning ? std::min(crowning->row, occiput.size() - 1) : occiput.size() - 1;
@@ -122,7 +124,11 @@ void rotation_figures(Figures& f, const Columns& column, std::size_t n) {
     f.rotation_done_station = station[i];
     break;
   }
-  f.extension = largest(flexion, n) - flexion[n - 1];
+  for (std::size_t i = 0; i < n; ++i) {
+    const double extension = largest(flexion, i + 1) - flexion[i];
+    if (extension > extended && f.extension <= extended) f.occiput_at_extension = occiput_low[i];
+    f.extension = std::max(f.extension, extension);
+  }
   if (f.birth_time) f.external_rotation = trunk.back() - trunk[n - 1];
 }
 

@@ -64,6 +64,7 @@ Json movements(const Figures& f) {
           {"internal_rotation_deg", number(f.rotation_at_crowning)},
           {"rotation_done_at_station_mm", number(f.rotation_done_station)},
           {"extension_deg", number(f.extension)},
+          {"occiput_below_symphysis_at_extension_mm", number(f.occiput_at_extension)},
           {"external_rotation_deg", number(f.external_rotation)}};
 }
 

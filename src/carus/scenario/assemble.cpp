@@ -42,8 +42,8 @@ Triangles filtered(const Triangles& triangles, const Triangles& others, bool amo
   return out;
 }
 
-/// Neck: the tets of the body within half the way to the shoulders from the head's upper end, along the axis of the
-/// fetus.
+/// Neck: the tets of the body, and of the skin over them, within half the way to the shoulders from the head's upper
+/// end, along the axis of the fetus.
 class Neck {
  public:
   explicit Neck(const Anatomy& a) {
@@ -55,12 +55,30 @@ class Neck {
     at_ = neck->second;
     axis_ = (neck->second - head->second).normalized();
     half_ = std::abs((shoulders - at_).dot(axis_)) / 2;
+    const auto& m = a.fetus.mesh;
+    trunk_.assign(m.nodes.size(), false), skull_.assign(m.nodes.size(), false);
+    for (std::size_t e = 0; e < m.tets.size(); ++e)
+      for (const std::int32_t n : m.tets[e]) {
+        if (m.labels[e] == anatomy::fetal_body) trunk_[n] = true;
+        if (m.labels[e] == anatomy::skull) skull_[n] = true;
+      }
   }
-  [[nodiscard]] bool contains(const Vec3& x) const { return std::abs((x - at_).dot(axis_)) < half_; }
+  [[nodiscard]] bool contains(const mesh::TetMesh& m, std::size_t tet) const {
+    Vec3 centre = Vec3::Zero();
+    for (const std::int32_t n : m.tets[tet]) centre += m.nodes[n] / 4;
+    if (std::abs((centre - at_).dot(axis_)) >= half_) return false;
+    if (m.labels[tet] == anatomy::fetal_body) return true;
+    // Skin over the neck: joins the trunk and no part of the skull.
+    if (m.labels[tet] != anatomy::fetal_skin) return false;
+    const auto& t = m.tets[tet];
+    return std::any_of(t.begin(), t.end(), [&](std::int32_t n) { return trunk_[n]; }) &&
+           std::none_of(t.begin(), t.end(), [&](std::int32_t n) { return skull_[n]; });
+  }
 
  private:
   Vec3 at_ = Vec3::Zero(), axis_ = Vec3::Zero();
   double half_ = 0;
+  std::vector<bool> trunk_, skull_;  ///< per node of the fetus: in a tet of that label
 };
 
 class Assembler {
@@ -100,11 +118,8 @@ class Assembler {
     const std::string name = anatomy::name_of(label);
     if (is_bone(label))
       return region(name, body.name, "bone", label != anatomy::coccyx || s_.coccyx.model != CoccyxModel::elastic);
-    if (label == anatomy::fetal_body) {
-      Vec3 centre = Vec3::Zero();
-      for (const std::int32_t n : body.mesh.tets[tet]) centre += body.mesh.nodes[n] / 4;
-      if (neck.contains(centre)) return region("neck", body.name, "neck", false);
-    }
+    if ((label == anatomy::fetal_body || label == anatomy::fetal_skin) && neck.contains(body.mesh, tet))
+      return region("neck", body.name, "neck", false);
     if (!s_.materials.contains(name))
       throw InputError(
           fmt::format("anatomy: {}: label {} has no material; allowed the regions of materials", body.name, label));
@@ -169,17 +184,18 @@ class Assembler {
     for (const std::int32_t n : nodes) model().blocked[n] |= bits;
   }
 
-  /// The paper, section 3.4: birth chair and thighs; the canal moves only in the transverse plane; the vulva may
-  /// stretch.
+  /// The paper, section 3.4: birth chair and thighs; the canal moves only in its transverse plane, which turns with its
+  /// axis, so that the vulva may stretch.
   void attachments() {
-    for (const char* name : {"abdomen.back", "abdomen.thighs"}) block(set_or_empty(name), fem::Blocked::all);
+    for (const char* name : {"abdomen.back", "abdomen.thighs"})
+      block(set_or_empty(name), fem::Blocked::all);
     if (!s_.attachments.canal_blocked) return;
-    block(set_or_empty("uterus.vaginal_canal"), fem::Blocked::z);
-    std::vector<std::int32_t> canal = set_or_empty("abdomen.canal");
-    const std::vector<std::int32_t> vulva = set_or_empty("abdomen.vulva");
-    const std::set<std::int32_t> free(vulva.begin(), vulva.end());
-    std::erase_if(canal, [&](std::int32_t n) { return free.contains(n); });
-    block(canal, fem::Blocked::z);
+    auto& direction = model().blocked_direction;
+    direction.assign(model().mesh.nodes.size(), Vec3::Zero());
+    const anatomy::CanalAxis axis(a_.parameters.canal);
+    for (const char* name : {"uterus.vaginal_canal", "abdomen.canal"})
+      for (const std::int32_t n : set_or_empty(name))
+        direction[n] = axis.tangent(axis.nearest(model().mesh.nodes[n]));
   }
 
   void bones() {
@@ -237,17 +253,18 @@ class Assembler {
           total += part;
         }
     const Vec3 stiffness(s_.attachments.tie_transverse, s_.attachments.tie_transverse, s_.attachments.tie_axial);
-    for (const auto& [node, part] : share) model().tethers.push_back({node, part / total * stiffness});
+    for (const auto& [node, part] : share)
+      for (int k = 0; k < 3; ++k) model().tethers.push_back({node, Vec3::Unit(k), part / total * stiffness[k]});
   }
 
-  /// The bed of the canal, by the area of its outer face at each node: along y behind the axis, along x all round.
+  /// The bed of canal and floor, by the area of their outer face at each node: towards the front behind the axis, along x all
+  /// round. Where the canal is narrow, its bed is deeper by as much, and softer in proportion.
   void canal_bed() {
     const auto outer = out_.surfaces.find("uterus.outer");
     const double posterior = s_.attachments.bed_posterior, lateral = s_.attachments.bed_lateral;
     if (outer == out_.surfaces.end() || (posterior == 0 && lateral == 0)) return;
-    const std::vector<std::int32_t> canal = set_or_empty("uterus.vaginal_canal");
     std::map<std::int32_t, double> area;
-    for (const std::int32_t n : canal) area[n] = 0;
+    for (const std::int32_t n : set_or_empty("uterus.bed")) area[n] = 0;
     for (const mesh::Triangle& t : outer->second) {
       const Vec3 u = model().mesh.nodes[t[1]] - model().mesh.nodes[t[0]],
                  w = model().mesh.nodes[t[2]] - model().mesh.nodes[t[0]];
@@ -258,9 +275,12 @@ class Assembler {
     for (const auto& [node, a] : area) {
       if (a == 0) continue;
       const Vec3& x = model().mesh.nodes[node];
-      const double s = axis.nearest(x);
-      const bool behind = (x - axis.point(s)).dot(axis.tangent(s).cross(Vec3::UnitX())) < 0;
-      model().tethers.push_back({node, a * Vec3(lateral, behind ? posterior : 0, 0)});
+      const double s = axis.nearest(x), depth = s_.attachments.bed_depth;
+      const double narrowed = axis.radius(0) - axis.radius(s), forward = (axis.centre(s) - axis.point(s)).norm();
+      const Vec3 front = axis.tangent(s).cross(Vec3::UnitX());
+      model().tethers.push_back({node, Vec3::UnitX(), a * lateral * depth / (depth + narrowed)});
+      if ((x - axis.centre(s)).dot(front) < 0)
+        model().tethers.push_back({node, front, a * posterior * depth / (depth + narrowed + forward)});
     }
   }
 
@@ -301,12 +321,7 @@ class Assembler {
     const Triangles coccyx = bone_surface("coccyx", [](std::int32_t l) { return l == anatomy::coccyx; });
     const Triangles bone = filtered(
         bone_surface("bone", [](std::int32_t l) { return is_bone(l) && l != anatomy::coccyx; }), coccyx, false);
-    Triangles cavity = filtered(filtered(out_.surfaces.at("abdomen.cavity"), bone, false), coccyx, false);
-    // The perineum round the vulva: the head slides over its edge.
-    if (const auto vulva = out_.surfaces.find("abdomen.vulva"); vulva != out_.surfaces.end()) {
-      const Triangles more = filtered(vulva->second, cavity, false);
-      cavity.insert(cavity.end(), more.begin(), more.end());
-    }
+    const Triangles cavity = filtered(filtered(out_.surfaces.at("abdomen.cavity"), bone, false), coccyx, false);
     const int skin = surface("skin", out_.surfaces.at("fetus.skin"));
     // Inside, outside and rim in one: which side a facet faces tells which body it can touch.
     const int uterus = surface("uterus", shifted(mesh::boundary(a_.uterus.mesh), out_.bodies.at(a_.uterus.name)));
@@ -328,9 +343,9 @@ class Assembler {
     const BodyRange& range = out_.bodies.at(a_.uterus.name);
     for (std::size_t e = 0; e < a_.uterus.mesh.tets.size(); ++e) {
       const std::int32_t label = a_.uterus.mesh.labels[e];
-      const double strength = label == anatomy::vaginal_canal   ? 0
+      const double strength = label == anatomy::uterine_fundus || label == anatomy::uterine_body ? 1
                               : label == anatomy::lower_segment ? from.lower_segment_strength
-                                                                : 1;
+                                                                : 0;
       if (strength <= 0) continue;
       const anatomy::WallFrame& wall = a_.uterine_wall[e];
       r.elements.push_back(range.tet_begin + static_cast<std::int32_t>(e));

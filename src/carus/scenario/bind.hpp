@@ -24,12 +24,14 @@ void bind_anatomy(Visitor& v, anatomy::Parameters& a) {
   auto& c = a.canal;
   v("canal.radius", c.radius), v("canal.bend_radius", c.bend_radius);
   v("canal.bend_start", c.bend_start), v("canal.bend_angle", c.bend_angle);
+  v("canal.vulva_radius", c.vulva_radius), v("canal.taper_start", c.taper_start), v("canal.floor_top", c.floor_top);
+  v("canal.taper_forward", c.taper_forward);
   auto& u = a.uterus;
   v("uterus.wall_fundus", u.wall_fundus), v("uterus.wall_body", u.wall_body);
   v("uterus.wall_lower_segment", u.wall_lower_segment), v("uterus.wall_canal", u.wall_canal), v("uterus.gap", u.gap);
   auto& b = a.abdomen;
   v("abdomen.wall", b.wall), v("abdomen.gap", b.gap), v("abdomen.levator_thickness", b.levator_thickness);
-  v("abdomen.hiatus_length", b.hiatus_length), v("abdomen.perineal_body_thickness", b.perineal_body_thickness);
+  v("abdomen.perineal_body_thickness", b.perineal_body_thickness);
   auto& f = a.fetus;
   v("fetus.biparietal", f.biparietal), v("fetus.occipitofrontal", f.occipitofrontal);
   v("fetus.suboccipitobregmatic", f.suboccipitobregmatic), v("fetus.shoulder_width", f.shoulder_width);
@@ -122,7 +124,7 @@ void bind(Visitor& v, Scenario& s) {
   v("attachments.lower_uterus_tie.axial", s.attachments.tie_axial),
       v("attachments.lower_uterus_tie.transverse", s.attachments.tie_transverse);
   v("attachments.canal_bed.posterior", s.attachments.bed_posterior),
-      v("attachments.canal_bed.lateral", s.attachments.bed_lateral);
+      v("attachments.canal_bed.lateral", s.attachments.bed_lateral), v("attachments.canal_bed.depth", s.attachments.bed_depth);
   v("attachments.canal_blocked", s.attachments.canal_blocked);
   bind_numerics(v, s);
 }

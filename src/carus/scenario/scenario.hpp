@@ -52,6 +52,7 @@ struct Coccyx {
 struct Attachments {
   double tie_axial = 0, tie_transverse = 0;   ///< [N/m], totals over all tied nodes
   double bed_posterior = 0, bed_lateral = 0;  ///< [Pa/m], of the canal's outer face
+  double bed_depth = 0;                       ///< [m], where the canal is wide
   bool canal_blocked = true;
 };
 struct Numerics {

@@ -76,8 +76,8 @@ double element_energy(const fem::Model& model, const fem::Batch& batch, int lane
 double tether_energy(const fem::Model& model, const fem::State& state) {
   double sum = 0;
   for (const auto& tether : model.tethers) {
-    const Vec3 u = state.x[tether.node] - model.mesh.nodes[tether.node];
-    sum += 0.5 * tether.stiffness.dot(u.cwiseProduct(u));
+    const double out = tether.direction.dot(state.x[tether.node] - model.mesh.nodes[tether.node]);
+    sum += 0.5 * tether.stiffness * out * out;
   }
   return sum;
 }

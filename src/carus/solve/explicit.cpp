@@ -59,7 +59,9 @@ struct Explicit::Impl {
   double dt;
   std::int64_t total_steps;
   Masses masses;
-  std::vector<Vec3> inverse_mass;  // of the mass with its implicit drag, m + dt drag m0; per axis, 0 where blocked
+  // Of the mass with its implicit drag, m + dt drag m0: M^-1 = D - b b^T. D per axis, 0 where blocked; b = t/sqrt(m)
+  // takes away a blocked direction t, 0 where there is none.
+  std::vector<Vec3> inverse_mass, inverse_mass_blocked;
   std::vector<fem::Block> blocks;
   std::vector<fem::KernelMaterial> materials;
   std::vector<std::int32_t> share_begin;                      // node -> its copies in the blocks
@@ -119,12 +121,15 @@ struct Explicit::Impl {
 
   void make_inverse_masses() {
     inverse_mass.assign(state.x.size(), Vec3::Zero());
+    inverse_mass_blocked.assign(state.x.size(), Vec3::Zero());
     for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
       if (masses.scaled[i] <= 0) continue;  // nodes of rigid parts only
       for (int k = 0; k < 3; ++k) inverse_mass[i][k] = (model.blocked[i] >> k) & 1 ? 0 : 1 / dragged_mass(i);
+      if (!model.blocked_direction.empty() && model.blocked[i] == fem::Blocked::none)
+        inverse_mass_blocked[i] = model.blocked_direction[i] / std::sqrt(dragged_mass(i));
     }
     for (const auto& h : model.hinges) {
-      for (const auto n : h.nodes) inverse_mass[n].setZero();
+      for (const auto n : h.nodes) inverse_mass[n].setZero(), inverse_mass_blocked[n].setZero();
     }
   }
 
@@ -183,7 +188,7 @@ struct Explicit::Impl {
     o.correction_speed = options.contact_correction;
     o.reach = 2 * options.contact_search;
     contact = std::make_unique<contact::Contact>(std::move(surfaces), std::move(pairs), model.mesh.nodes, inverse_mass,
-                                                 std::move(hinge_of), std::move(hinges), o);
+                                                 inverse_mass_blocked, std::move(hinge_of), std::move(hinges), o);
   }
 
   // ---- one step, in the order of execution ----
@@ -196,8 +201,8 @@ struct Explicit::Impl {
       if (pressures[l] != 0) fem::add_pressure_forces(model.pressures[l], pressures[l], state.x, external_force);
     }
     for (const auto& tether : model.tethers) {
-      external_force[tether.node] -=
-          tether.stiffness.cwiseProduct(state.x[tether.node] - model.mesh.nodes[tether.node]);
+      const double out = tether.direction.dot(state.x[tether.node] - model.mesh.nodes[tether.node]);
+      external_force[tether.node] -= tether.stiffness * out * tether.direction;
     }
   }
 
@@ -278,7 +283,9 @@ struct Explicit::Impl {
           f += Vec3(g[0], g[1], g[2]);
         }
         Vec3& v = state.v[i];
-        v = inverse_mass[i].cwiseProduct(masses.scaled[i] * v + dt * (f + external_force[i]));
+        const Vec3 momentum = masses.scaled[i] * v + dt * (f + external_force[i]);
+        const Vec3& held = inverse_mass_blocked[i];
+        v = inverse_mass[i].cwiseProduct(momentum) - held.dot(momentum) * held;
         v_free[i] = v;
       }
     });

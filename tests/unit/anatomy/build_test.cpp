@@ -53,7 +53,8 @@ void expect_names(const Anatomy& a) {
                            "contraction", "tone",         "vaginal_canal", "lower_uterus_tie",
                            "vulva",       "point_fundus", "point_lower",   "point_left",
                            "point_right", "back",         "thighs",        "front",
-                           "canal",       "cavity",       "bone",          "coccyx"})
+                           "canal",       "cavity",       "bone",          "coccyx",
+                           "bed",         "hiatus"})
     EXPECT_TRUE(names.contains(name)) << name;
   EXPECT_EQ(a.uterine_wall.size(), a.uterus.mesh.tets.size());
 }

@@ -84,9 +84,24 @@ TEST(Uterus, WallHasItsThicknessAndLabels) {
     if (label == uterine_body) out = r;
   }
   EXPECT_NEAR(out - in, p.uterus.wall_body, 1e-4);
-  EXPECT_EQ(uterus.label(uterus.axis().point(0.09) + Vec3(p.canal.radius + 0.002, 0, 0)), vaginal_canal);
-  EXPECT_EQ(uterus.label(uterus.axis().point(uterus.axis().vulva() + 0.001) + Vec3(p.canal.radius + 0.002, 0, 0)),
-            outside);
+  const CanalAxis& axis = uterus.axis();
+  EXPECT_EQ(uterus.label(axis.centre(axis.vulva() - 0.001) + Vec3(p.canal.vulva_radius + 0.002, 0, 0)), vaginal_canal);
+  EXPECT_EQ(uterus.label(axis.centre(axis.vulva() + 0.001) + Vec3(p.canal.vulva_radius + 0.002, 0, 0)), outside);
+}
+
+TEST(CanalAxis, NarrowsForwardDownToTheVulva) {
+  CanalParameters p;
+  p.taper_forward = 1;
+  const CanalAxis axis(p);
+  EXPECT_EQ(axis.radius(0), p.radius);
+  EXPECT_EQ(axis.radius(p.taper_start), p.radius);
+  EXPECT_NEAR(axis.radius(axis.vulva()), p.vulva_radius, 1e-12);
+  for (double s = 0; s < axis.vulva(); s += 0.005) {
+    // From behind only: the front wall stays where it was, in the axis' cross-section.
+    const Vec3 t = axis.tangent(s), front(0, -t.z(), t.y()), off = axis.centre(s) - axis.point(s);
+    EXPECT_NEAR(off.dot(front) + axis.radius(s), p.radius, 1e-12);
+    EXPECT_NEAR(off.dot(t), 0, 1e-12);
+  }
 }
 
 TEST(Bodies, DoNotOverlap) {

@@ -27,7 +27,13 @@ Bodies two(const mesh::TetMesh& a, const mesh::TetMesh& b) {
 
 Contact make(const Bodies& b, double mass, double friction = 0, Options options = {}) {
   const std::vector<Vec3> inverse(b.mesh.nodes.size(), Vec3::Constant(1 / mass));
-  return {b.surfaces, {{0, 1, friction}}, b.mesh.nodes, inverse, std::vector<std::int16_t>(inverse.size(), -1), {},
+  return {b.surfaces,
+          {{0, 1, friction}},
+          b.mesh.nodes,
+          inverse,
+          std::vector<Vec3>(inverse.size(), Vec3::Zero()),
+          std::vector<std::int16_t>(inverse.size(), -1),
+          {},
           options};
 }
 

@@ -234,7 +234,7 @@ TEST(Explicit, EnergyBalances) {
   auto m = labouring();
   m.regions[1].material.prony.clear();  // Maxwell branches dissipate without a book of their own
   for (std::size_t i = 0; i < m.mesh.nodes.size(); ++i) {
-    if (m.mesh.nodes[i].z() > 0.055) m.tethers.push_back({std::int32_t(i), Vec3(2, 3, 1)});
+    if (m.mesh.nodes[i].z() > 0.055) m.tethers.push_back({std::int32_t(i), Vec3(0.6, 0.8, 0), 3});
   }
   Explicit s(m, hundredfold());
   models::set(s, [&](fem::State& st) { throw_ball(m, st, {0.1, 0, -1}); });
