@@ -22,6 +22,7 @@ struct Surface {
   std::vector<std::uint8_t> on_crease;  ///< local vertex of a sharp edge at rest: no smooth surface to stand for
   std::vector<Vec3> normal;             ///< per local vertex, unit, kept up to date by Contact
   std::vector<Vec3> facet_normal;       ///< per triangle, twice the area vector
+  std::vector<Vec3> rest_centre;        ///< per triangle
 
   Surface(std::string name, mesh::Triangles triangles, const std::vector<Vec3>& rest);
   void update_normals(const std::vector<Vec3>& x);
@@ -84,7 +85,7 @@ class Contact {
   /// Changes the velocities (and hinge rates) so that no active pair closes faster than its gap allows.
   void solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate);
   /// To be told how far any node moved at most in this step [m].
-  void moved(double distance) { travelled_ += distance; }
+  void moved(double distance) { since_look_ += distance; }
 
   [[nodiscard]] const std::vector<Constraint>& constraints() const { return constraints_; }
   [[nodiscard]] double least_gap() const;  ///< of the active constraints [m]; +inf without any
@@ -93,7 +94,7 @@ class Contact {
 
   /// Forgets partners and normals: the next `detect` finds them anew. What follows then depends on positions,
   /// velocities and warm-start impulses alone, so a checkpoint taken here continues bit for bit.
-  void start_afresh() { travelled_ = 0, renewed_at_ = -1e30; }
+  void start_afresh() { afresh_ = true; }
   [[nodiscard]] std::vector<double> save() const;  ///< warm-start impulses, one per probe
   void load(const double* impulses);
 
@@ -109,16 +110,29 @@ class Contact {
     std::int32_t node, vertex;  ///< global node, local vertex of its own surface
     std::int32_t triangle = -1;
     std::int32_t pass;
-    double wake = 0;  ///< sleeps until this much has been travelled
     double impulse = 0;
+    double sleeps_until = 0;  ///< travel of both its surfaces before which it cannot touch; less all the time: awake
+  };
+  /// How far the nodes of a surface have gone, each in a straight line between two looks.
+  struct Motion {
+    std::vector<Vec3> at_renewal, at_look;  ///< positions of its nodes
+    double net = 0;                         ///< [m] greatest displacement since the renewal
+    double travel = 0;                      ///< [m] sum over the looks since then of the greatest displacements
   };
 
   void renew(const std::vector<Vec3>& x);
+  void measure_motion(const std::vector<Vec3>& x);
+  [[nodiscard]] double travel(const Pass& p) const { return motion_[p.nodes].travel + motion_[p.facets].travel; }
+  template <bool look>
+  void constrain_all(const std::vector<std::int32_t>& list, const std::vector<Vec3>& x, double dt, double active_below);
+  void fetch_ahead(const std::vector<std::int32_t>& list, std::size_t i, std::size_t end,
+                   const std::vector<Vec3>& x) const;
   void update_normals(const std::vector<Vec3>& x);
   void renew_probe(Probe& probe, const std::vector<Vec3>& x) const;
   Vec3 follow(Probe& probe, const std::vector<Vec3>& x) const;  ///< weights of the foot on the facet it ends at
   bool admissible(const Probe& probe, std::int32_t triangle) const;
-  bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c) const;
+  bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c,
+                 double& clearance) const;
   [[nodiscard]] Vec3 response(std::int32_t node, const Vec3& impulse) const {
     const Vec3& b = inverse_mass_blocked_[node];
     return inverse_mass_[node].cwiseProduct(impulse) - b.dot(impulse) * b;
@@ -136,9 +150,17 @@ class Contact {
   std::vector<Probe> probes_;
   std::vector<std::uint8_t> moves_;  ///< per surface: some node of it can
   std::vector<TriangleGrid> grids_;  ///< per surface
+  std::vector<Motion> motion_;       ///< per surface
+  std::vector<std::int32_t> near_;   ///< probes with a partner, in rising order
+  std::vector<std::int32_t> awake_;  ///< those of them that may touch before the next look
   std::vector<std::vector<Constraint>> chunk_constraints_;
+  std::vector<std::vector<std::int32_t>> chunk_awake_;
   std::vector<Constraint> constraints_;
-  double travelled_ = 0, renewed_at_ = -1e30;
+  std::vector<std::int32_t> live_;  ///< constraints that the first sweep did not leave far from touching
+  double dt_ = 0;
+  bool afresh_ = true;
+  double since_look_ = 0;   ///< [m] that the fastest node of all may have travelled since the last look
+  double awake_below_ = 0;  ///< [m] clearance below which the last look left probes awake
   int steps_since_renewal_ = 0;
   std::int64_t renewals_ = 0;
   double seconds_renewing_ = 0;

@@ -11,9 +11,11 @@ namespace carus::contact {
 
 namespace {
 
-constexpr std::size_t probe_chunk = 512;
+constexpr std::size_t probe_chunk = 256;
 constexpr int normals_every = 8;  // steps: normals turn slowly against the step
 constexpr int renew_every = 400;  // steps at most, so that folds find their new partner
+constexpr int look_every = 8;     // steps, about: fewer cost looks, more keep probes awake that do not touch
+constexpr double awake = -std::numeric_limits<double>::infinity();
 
 Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3& w) {
   return w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
@@ -32,7 +34,8 @@ Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const s
       hinge_of_node_(std::move(hinge_of_node)),
       hinges_(std::move(hinges)),
       options_(options),
-      grids_(surfaces_.size()) {
+      grids_(surfaces_.size()),
+      motion_(surfaces_.size()) {
   const auto add = [&](int nodes, int facets, double friction) {
     const auto first = std::int32_t(probes_.size());
     for (std::size_t v = 0; v < surfaces_[nodes].nodes.size(); ++v) {
@@ -51,6 +54,7 @@ Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const s
                                  [&](std::int32_t n) { return hinge_of_node_[n] >= 0 || !inverse_mass_[n].isZero(); }));
   }
   chunk_constraints_.resize((probes_.size() + probe_chunk - 1) / probe_chunk);
+  chunk_awake_.resize(chunk_constraints_.size());
 }
 
 bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
@@ -60,9 +64,8 @@ bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
   // Surfaces that touch face each other; a fold's far side and the back of a thin wall do not.
   if (own.normal[probe.vertex].dot(other.facet_normal[triangle]) > 0) return false;
   if (!pass.self) return true;
-  const mesh::Triangle& t = other.triangles[triangle];
-  const Vec3 centre = (rest_[t[0]] + rest_[t[1]] + rest_[t[2]]) / 3;
-  return (centre - rest_[probe.node]).squaredNorm() > options_.self_exclusion * options_.self_exclusion;
+  return (other.rest_centre[triangle] - rest_[probe.node]).squaredNorm() >
+         options_.self_exclusion * options_.self_exclusion;
 }
 
 void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
@@ -71,37 +74,61 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
   const Vec3& p = x[probe.node];
   double best = options_.reach * options_.reach;
   std::int32_t found = -1;
-  grids_[pass.facets].for_each_near(p, [&](std::int32_t t) {
+  grids_[pass.facets].for_each_near(p, surfaces_[pass.nodes].normal[std::size_t(probe.vertex)], best, [&](std::int32_t t) {
     const mesh::Triangle& f = other.triangles[t];
     if (!admissible(probe, t)) return;
     const Vec3 w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
     const Vec3 d = p - interpolate(x, f, w);
     const double d2 = d.squaredNorm();
-    if (d2 >= best) return;
+    if (d2 > best || (d2 == best && t >= found)) return;  // of equals the first: the order of search says nothing
     const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
     if (depth > options_.max_depth) return;
     best = d2, found = t;
   });
-  if (found != probe.triangle && found < 0) probe.impulse = 0;
+  if (found < 0) probe.impulse = 0;
   probe.triangle = found;
-  // Both sides may move towards each other: the gap closes by at most twice what any node travels.
-  probe.wake = found < 0 ? std::numeric_limits<double>::infinity() : 0;
+  probe.sleeps_until = awake;
 }
 
 void Contact::renew(const std::vector<Vec3>& x) {
   const auto start = std::chrono::steady_clock::now();
   const bool first = renewals_ == 0;
   update_normals(x);
-  parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t b, std::size_t, std::size_t) {
-    if (first || moves_[b]) grids_[b].build(x, surfaces_[b].triangles, options_.reach);
+  parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
+    if (!first && !moves_[s]) return;
+    grids_[s].build(x, surfaces_[s].triangles, options_.reach);
+    Motion& m = motion_[s];
+    m.at_renewal.clear();
+    for (const auto n : surfaces_[s].nodes) m.at_renewal.push_back(x[n]);
+    m.at_look = m.at_renewal;
+    m.net = m.travel = 0;
   });
   parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
     for (std::size_t i = b; i < e; ++i) renew_probe(probes_[i], x);
   });
-  renewed_at_ = travelled_;
+  near_.clear();
+  for (std::size_t i = 0; i < probes_.size(); ++i) {
+    if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
+  }
+  afresh_ = false;
   steps_since_renewal_ = 0;
   ++renewals_;
   seconds_renewing_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void Contact::measure_motion(const std::vector<Vec3>& x) {
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    if (!moves_[s]) continue;
+    Motion& m = motion_[s];
+    double net = 0, step = 0;
+    for (std::size_t v = 0; v < m.at_look.size(); ++v) {
+      const Vec3& p = x[surfaces_[s].nodes[v]];
+      net = std::max(net, (p - m.at_renewal[v]).squaredNorm());
+      step = std::max(step, (p - m.at_look[v]).squaredNorm());
+      m.at_look[v] = p;
+    }
+    m.net = std::sqrt(net), m.travel += std::sqrt(step);
+  }
 }
 
 /// Of what moves; a fixed bone has had its normals since the start.
@@ -142,7 +169,9 @@ Vec3 Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
   return w;
 }
 
-bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c) const {
+/// `clearance`: how far node and facets must move towards each other, at least, before this can become a constraint.
+bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c,
+                        double& clearance) const {
   const Pass& pass = passes_[probe.pass];
   const Surface& other = surfaces_[pass.facets];
   const Vec3 w = follow(probe, x);
@@ -156,8 +185,10 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
   // Beyond an open edge the surface has ended: no contact on its continuation.
   bool border = true;
   for (int k = 0; k < 3; ++k) border = border && (w[k] <= 0 || other.on_border[std::size_t(v[k])]);
-  if (border && w.minCoeff() <= 0 && (d - along * n).squaredNorm() > 1e-8 + 0.01 * along * along) {
+  const double beside2 = (d - along * n).squaredNorm();
+  if (border && w.minCoeff() <= 0 && beside2 > 1e-8 + 0.01 * along * along) {
     probe.impulse = 0;
+    clearance = along > 0 ? d.norm() : std::sqrt(beside2) + 0.1 * along;
     return false;
   }
   // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
@@ -169,12 +200,10 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
   const double gap = along - std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   if (gap > active_below || gap < -options_.max_depth) {
     probe.impulse = 0;
-    if (gap > active_below) {
-      // Never asleep for longer than it takes both sides to meet at the greatest speed.
-      probe.wake = travelled_ + 0.5 * (std::min(d.norm(), gap) - active_below);
-    }
+    clearance = gap > active_below ? std::min(d.norm(), gap) : -options_.max_depth - gap;
     return false;
   }
+  clearance = 0;
   c.node = probe.node, c.facet = f, c.w = {w[0], w[1], w[2]}, c.n = n, c.gap = gap, c.friction = pass.friction;
   c.impulse = probe.impulse, c.slip = Vec3::Zero();
   c.target = gap >= 0 ? -gap / dt : std::min(-gap / dt, options_.correction_speed);
@@ -196,28 +225,84 @@ void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {
   c.mass = inverse > 0 ? 1 / inverse : 0;
 }
 
-void Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
-  // A probe that found nothing within reach, or chose its partner, is good until both sides have moved half of the
-  // reach left.
-  const double active_below = options_.activation + 2 * dt * max_speed;
-  if (travelled_ - renewed_at_ > 0.5 * (options_.reach - active_below) - 1e-3 || steps_since_renewal_ >= renew_every) {
-    renew(x);
-  } else if (steps_since_renewal_ % normals_every == 0) {
-    update_normals(x);
+/// The data of a contact lie all over the memory, and by the next step the elements have swept them out of the caches:
+/// ask for them a few probes ahead.
+void Contact::fetch_ahead(const std::vector<std::int32_t>& list, std::size_t i, std::size_t end,
+                          const std::vector<Vec3>& x) const {
+  constexpr std::size_t far = 12, middle = 8, close = 4;
+  if (i + far < end) __builtin_prefetch(&probes_[std::size_t(list[i + far])]);
+  if (i + middle < end) {
+    const Probe& p = probes_[std::size_t(list[i + middle])];
+    const Surface& other = surfaces_[passes_[p.pass].facets];
+    __builtin_prefetch(&other.triangles[p.triangle]);
+    __builtin_prefetch(&other.local[p.triangle]);
+    __builtin_prefetch(&x[p.node]);
+    __builtin_prefetch(&inverse_mass_[p.node]);
   }
-  ++steps_since_renewal_;
-  parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t chunk) {
+  if (i + close < end) {
+    const Probe& p = probes_[std::size_t(list[i + close])];
+    const Surface& other = surfaces_[passes_[p.pass].facets];
+    for (int k = 0; k < 3; ++k) {
+      __builtin_prefetch(&x[other.triangles[p.triangle][k]]);
+      __builtin_prefetch(&other.normal[std::size_t(other.local[p.triangle][k])]);
+      __builtin_prefetch(&inverse_mass_[other.triangles[p.triangle][k]]);
+    }
+  }
+}
+
+/// Constraints of the probes of a list; with `look`, also which of them stay awake until the next look.
+template <bool look>
+void Contact::constrain_all(const std::vector<std::int32_t>& list, const std::vector<Vec3>& x, double dt,
+                            double active_below) {
+  parallel::for_chunks(list.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t chunk) {
     auto& out = chunk_constraints_[chunk];
     out.clear();
+    if (look) chunk_awake_[chunk].clear();
     Constraint c;
+    double clearance = 0;
     for (std::size_t i = b; i < e; ++i) {
-      Probe& probe = probes_[i];
-      if (probe.triangle < 0 || probe.wake > travelled_) continue;
-      if (constrain(probe, x, dt, active_below, c)) c.probe = std::int32_t(i), out.push_back(c);
+      fetch_ahead(list, i, e, x);
+      Probe& probe = probes_[std::size_t(list[i])];
+      if (look && probe.sleeps_until - travel(passes_[probe.pass]) > awake_below_) continue;
+      if (constrain(probe, x, dt, active_below, c, clearance)) c.probe = list[i], out.push_back(c);
+      if (!look) continue;
+      const bool sleeps = clearance > awake_below_;
+      probe.sleeps_until = sleeps ? travel(passes_[probe.pass]) + clearance : awake;
+      if (!sleeps) chunk_awake_[chunk].push_back(list[i]);
     }
   });
+  const std::size_t chunks = (list.size() + probe_chunk - 1) / probe_chunk;
   constraints_.clear();
-  for (const auto& part : chunk_constraints_) constraints_.insert(constraints_.end(), part.begin(), part.end());
+  for (std::size_t c = 0; c < chunks; ++c)
+    constraints_.insert(constraints_.end(), chunk_constraints_[c].begin(), chunk_constraints_[c].end());
+  if (!look) return;
+  awake_.clear();
+  for (std::size_t c = 0; c < chunks; ++c) awake_.insert(awake_.end(), chunk_awake_[c].begin(), chunk_awake_[c].end());
+}
+
+void Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
+  dt_ = dt;
+  const double closing = 2 * dt * max_speed;  // of two nodes in a step
+  const double active_below = options_.activation + closing;
+  bool look = afresh_ || steps_since_renewal_ >= renew_every || awake_below_ - 2 * since_look_ < active_below;
+  if (look) {
+    awake_below_ = active_below + std::min(look_every * closing, 0.25 * options_.reach);
+    since_look_ = 0;
+    if (!afresh_) measure_motion(x);
+    // What a renewal has left out was beyond reach, on the smooth surface too.
+    const double reserve = options_.reach - options_.sagitta_limit - awake_below_;
+    const bool worn_out = std::any_of(passes_.begin(), passes_.end(), [&](const Pass& p) {
+      return motion_[p.nodes].net + motion_[p.facets].net > reserve;
+    });
+    if (afresh_ || worn_out || steps_since_renewal_ >= renew_every) renew(x);
+  }
+  if (steps_since_renewal_ > 0 && steps_since_renewal_ % normals_every == 0) update_normals(x);
+  ++steps_since_renewal_;
+  if (look) {
+    constrain_all<true>(near_, x, dt, active_below);
+  } else {
+    constrain_all<false>(awake_, x, dt, active_below);
+  }
 }
 
 double Contact::least_gap() const {

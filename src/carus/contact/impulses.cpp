@@ -27,21 +27,31 @@ void Contact::solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate) {
   for (const Constraint& c : constraints_) {
     if (c.impulse > 0) apply(c, c.impulse * c.n, v, hinge_rate);
   }
-  for (int sweep = 0; sweep < options_.sweeps; ++sweep) {
-    for (Constraint& c : constraints_) {
-      const double wanted = std::max(0.0, c.impulse + c.mass * (c.target - normal_speed(c)));
-      const double change = wanted - c.impulse;
-      c.impulse = wanted;
-      if (change != 0) apply(c, change * c.n, v, hinge_rate);
-      if (c.friction > 0) {
-        const Vec3 u = relative(c);
-        Vec3 slip = c.slip - c.mass * (u - u.dot(c.n) * c.n);
-        const double limit = double(c.friction) * c.impulse, size = slip.norm();
-        if (size > limit) slip *= limit / size;
-        apply(c, slip - c.slip, v, hinge_rate);
-        c.slip = slip;
-      }
+  const auto relax = [&](Constraint& c) {
+    const double speed = normal_speed(c), wanted = std::max(0.0, c.impulse + c.mass * (c.target - speed));
+    const double change = wanted - c.impulse;
+    c.impulse = wanted;
+    if (change != 0) apply(c, change * c.n, v, hinge_rate);
+    if (c.friction > 0) {
+      const Vec3 u = relative(c);
+      Vec3 slip = c.slip - c.mass * (u - u.dot(c.n) * c.n);
+      const double limit = double(c.friction) * c.impulse, size = slip.norm();
+      if (size > limit) slip *= limit / size;
+      apply(c, slip - c.slip, v, hinge_rate);
+      c.slip = slip;
     }
+    return speed;
+  };
+  // Most pairs that might touch do not: what the first sweep leaves further than `activation` apart at the end of the
+  // step is left alone by the others.
+  live_.clear();
+  for (std::size_t i = 0; i < constraints_.size(); ++i) {
+    Constraint& c = constraints_[i];
+    const double speed = relax(c);
+    if (c.impulse > 0 || dt_ * (speed - c.target) < options_.activation) live_.push_back(std::int32_t(i));
+  }
+  for (int sweep = 1; sweep < options_.sweeps; ++sweep) {
+    for (const auto i : live_) relax(constraints_[std::size_t(i)]);
   }
   for (const Constraint& c : constraints_) probes_[c.probe].impulse = c.impulse;
 }

@@ -33,6 +33,8 @@ Surface::Surface(std::string surface_name, mesh::Triangles t, const std::vector<
   }
   normal.resize(nodes.size());
   facet_normal.resize(triangles.size());
+  rest_centre.reserve(triangles.size());
+  for (const auto& f : triangles) rest_centre.push_back((rest[f[0]] + rest[f[1]] + rest[f[2]]) / 3);
   update_normals(rest);
   constexpr double cos_crease = 0.77;  // 40 degrees between a facet and the mean of its corner
   on_crease.assign(nodes.size(), 0);

@@ -9,7 +9,7 @@
 namespace carus::contact {
 namespace {
 
-/// Every triangle within reach, in rising order, against all triangles; sizes over three orders of magnitude.
+/// Every triangle within reach against all triangles; sizes over three orders of magnitude.
 TEST(TriangleGrid, ReturnsAllWithinReach) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -31,8 +31,9 @@ TEST(TriangleGrid, ReturnsAllWithinReach) {
     for (int q = 0; q < 500; ++q) {
       const Vec3 p = Vec3(0.2, -0.1, 0.05) + point(0.3);  // many outside the grid too
       std::vector<std::int32_t> found;
-      grid.for_each_near(p, [&](std::int32_t t) { found.push_back(t); });
-      EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
+      const double reach2 = reach * reach;
+      grid.for_each_near(p, Vec3::Zero(), reach2, [&](std::int32_t t) { found.push_back(t); });
+      std::sort(found.begin(), found.end());
       offered += found.size();
       for (std::int32_t t = 0; t < std::int32_t(triangles.size()); ++t) {
         const Vec3 &a = x[triangles[t][0]], &b = x[triangles[t][1]], &c = x[triangles[t][2]];
@@ -50,7 +51,37 @@ TEST(TriangleGrid, ReturnsAllWithinReach) {
 TEST(TriangleGrid, EmptyFindsNothing) {
   TriangleGrid grid;
   grid.build({}, {}, 0.01);
-  grid.for_each_near(Vec3::Zero(), [](std::int32_t) { FAIL(); });
+  grid.for_each_near(Vec3::Zero(), Vec3::Zero(), 1.0, [](std::int32_t) { FAIL(); });
+}
+
+/// A search that narrows finds the nearest, from near and from afar.
+TEST(TriangleGrid, NarrowingSearchFindsTheNearest) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto point = [&](double size) -> Vec3 {
+    return size * Vec3(uniform(random), uniform(random), uniform(random));
+  };
+  std::vector<Vec3> x;
+  mesh::Triangles triangles;
+  for (int i = 0; i < 400; ++i) {
+    const Vec3 centre = point(0.1);
+    for (int k = 0; k < 3; ++k) x.push_back(centre + point(0.01));
+    triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  TriangleGrid grid;
+  grid.build(x, triangles, 0.005);
+  for (int q = 0; q < 300; ++q) {
+    const Vec3 p = point(0.2);
+    const auto squared = [&](std::int32_t t) {
+      const Vec3 &a = x[triangles[t][0]], &b = x[triangles[t][1]], &c = x[triangles[t][2]];
+      const Vec3 w = mesh::closest_point_weights(p, a, b, c);
+      return (p - (w[0] * a + w[1] * b + w[2] * c)).squaredNorm();
+    };
+    double exact = 1, found = 1;
+    for (std::int32_t t = 0; t < std::int32_t(triangles.size()); ++t) exact = std::min(exact, squared(t));
+    grid.for_each_near(p, Vec3::Zero(), found, [&](std::int32_t t) { found = std::min(found, squared(t)); });
+    EXPECT_EQ(found, exact);
+  }
 }
 
 }  // namespace
