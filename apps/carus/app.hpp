@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "carus/anatomy/anatomy.hpp"
+#include "carus/scenario/scenario.hpp"
 
 namespace carus::app {
 
@@ -16,8 +16,10 @@ enum Status : int { done = 0, bad_input = 2, numerical_failure = 3, interrupted 
 void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_anatomy(CLI::App& app, int& status);
+void add_study(CLI::App& app, int& status);
+void add_bench(CLI::App& app, int& status);
 
-/// The reference anatomy; throws InputError naming the missing option in builds without meshing.
-anatomy::Anatomy build_anatomy(const anatomy::Parameters& parameters);
+/// A scenario's anatomy, read from anatomy.from or meshed; throws InputError in builds that cannot mesh.
+anatomy::Anatomy build_anatomy(const scenario::Scenario& scenario);
 
 }  // namespace carus::app
