@@ -117,8 +117,9 @@ void name_uterus(Body& body, const anatomy::Uterus& uterus) {
   body.nodes.push_back({"hiatus", nodes_where(m, hiatus, [&](const Vec3& x) {
                           return axis.nearest(x) > axis.vulva() - hiatus_height;
                         })});
+  // The paper's Fig. 14 follows a front-sagittal point at the top: where the dome faces upwards and forwards alike.
   body.nodes.push_back(
-      {"point_fundus", best_node(m, outer_nodes, [](const Vec3& x) { return x.z() - 0.1 * x.head<2>().norm(); })});
+      {"point_fundus", best_node(m, outer_nodes, [](const Vec3& x) { return x.z() + x.y() - std::abs(x.x()); })});
   const auto lower = nodes_where(m, outer_nodes, [](const Vec3& x) { return x.z() > 0.005 && x.z() < 0.035; });
   body.nodes.push_back({"point_lower", best_node(m, lower, [](const Vec3& x) {
                           return x.y() - std::abs(x.x()) - std::abs(x.z() - 0.02);

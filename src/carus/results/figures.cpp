@@ -176,7 +176,7 @@ Figures figures_of(const Table& table, const labour::Contractions& contractions)
   head_figures(f, column, n);
   contraction_figures(f, column, n, contractions);
   const auto length = column("uterus_length_mm");
-  f.uterus_start = length.front(), f.uterus_end = length.back();
+  f.uterus_start = length.front(), f.uterus_end = length[n - 1];
   const auto left = column("uterus_left_x_mm"), right = column("uterus_right_x_mm");
   for (std::size_t i = 0; i < all; ++i) {
     if (std::abs(left[i] - right[i]) > std::abs(f.lateral_left - f.lateral_right))
