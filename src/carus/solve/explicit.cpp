@@ -406,8 +406,9 @@ struct Explicit::Impl {
   void keep() {
     state.rest_length = rest_length.rings();
     state.internal = {work.external, work.contact, work.damping, work.active, work.internal, max_speed};
-    const auto impulses = contact->save();
-    state.internal.insert(state.internal.end(), impulses.begin(), impulses.end());
+    contact->pause(state.x);
+    const auto partners = contact->save();
+    state.internal.insert(state.internal.end(), partners.begin(), partners.end());
     for (const auto& b : blocks) {
       for (const auto& h : b.history) {
         for (const auto& row : h.s_iso) state.internal.insert(state.internal.end(), row, row + fem::lanes);
@@ -415,7 +416,6 @@ struct Explicit::Impl {
       }
     }
     good = state, good_work = work;
-    contact->start_afresh();
     loads_due = true;
   }
 
@@ -423,7 +423,7 @@ struct Explicit::Impl {
     const double* p = state.internal.data();
     work = {p[0], p[1], p[2], p[3], p[4]}, max_speed = p[5];
     p += 6;
-    contact->load(p);
+    contact->load(p, state.x);
     p += contact->save().size();
     for (auto& b : blocks) {
       for (auto& h : b.history) {
@@ -435,7 +435,6 @@ struct Explicit::Impl {
     }
     rest_length.rings() = state.rest_length;
     set_rest_shape();
-    contact->start_afresh();
     loads_due = true;
   }
 };
