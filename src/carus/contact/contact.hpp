@@ -92,13 +92,16 @@ class Contact {
   [[nodiscard]] std::int64_t renewals() const { return renewals_; }
   [[nodiscard]] double seconds_renewing() const { return seconds_renewing_; }
 
-  /// Forgets partners and normals: the next `detect` finds them anew. What follows then depends on positions,
-  /// velocities and warm-start impulses alone, so a checkpoint taken here continues bit for bit.
-  void start_afresh() { afresh_ = true; }
-  [[nodiscard]] std::vector<double> save() const;  ///< warm-start impulses, one per probe
-  void load(const double* impulses);
+  /// Ends a stretch at positions `x`. What follows depends on positions, velocities and what `save` returns alone, so a
+  /// checkpoint taken here continues bit for bit.
+  void pause(const std::vector<Vec3>& x);
+  /// Partners and warm-start impulses per probe, and how far the last renewal is behind; always of the same length.
+  [[nodiscard]] std::vector<double> save() const;
+  /// As after the `pause` that `saved` is of.
+  void load(const double* saved, const std::vector<Vec3>& x);
 
  private:
+  static constexpr int never = 1 << 30;
   struct Pass {
     int nodes, facets;  ///< surfaces
     bool self;
@@ -113,15 +116,24 @@ class Contact {
     double impulse = 0;
     double sleeps_until = 0;  ///< travel of both its surfaces before which it cannot touch; less all the time: awake
   };
-  /// How far the nodes of a surface have gone, each in a straight line between two looks.
+  /// How far the nodes of a surface have gone, as the greatest displacements [m] over three kinds of time.
   struct Motion {
-    std::vector<Vec3> at_renewal, at_look;  ///< positions of its nodes
-    double net = 0;                         ///< [m] greatest displacement since the renewal
-    double travel = 0;                      ///< [m] sum over the looks since then of the greatest displacements
+    std::vector<Vec3> at_start, at_look;  ///< positions of its nodes: when the stretch began, at the last look
+    double net = 0;                       ///< since the stretch began
+    double before = 0;                    ///< from the renewal to there, a sum over stretches
+    double travel = 0;                    ///< a sum over the looks since the stretch began
+  };
+
+  /// Nearest point of a facet.
+  struct Foot {
+    Vec3 w, point;   ///< weights of the corners, position
+    double squared;  ///< distance [m^2]
   };
 
   void renew(const std::vector<Vec3>& x);
+  void begin_stretch(const std::vector<Vec3>& x);
   void measure_motion(const std::vector<Vec3>& x);
+  [[nodiscard]] bool worn_out() const;
   [[nodiscard]] double travel(const Pass& p) const { return motion_[p.nodes].travel + motion_[p.facets].travel; }
   template <bool look>
   void constrain_all(const std::vector<std::int32_t>& list, const std::vector<Vec3>& x, double dt, double active_below);
@@ -129,7 +141,7 @@ class Contact {
                    const std::vector<Vec3>& x) const;
   void update_normals(const std::vector<Vec3>& x);
   void renew_probe(Probe& probe, const std::vector<Vec3>& x) const;
-  Vec3 follow(Probe& probe, const std::vector<Vec3>& x) const;  ///< weights of the foot on the facet it ends at
+  Foot follow(Probe& probe, const std::vector<Vec3>& x) const;
   bool admissible(const Probe& probe, std::int32_t triangle) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c,
                  double& clearance) const;
@@ -158,10 +170,10 @@ class Contact {
   std::vector<Constraint> constraints_;
   std::vector<std::int32_t> live_;  ///< constraints that the first sweep did not leave far from touching
   double dt_ = 0;
-  bool afresh_ = true;
+  bool look_due_ = true;
   double since_look_ = 0;   ///< [m] that the fastest node of all may have travelled since the last look
   double awake_below_ = 0;  ///< [m] clearance below which the last look left probes awake
-  int steps_since_renewal_ = 0;
+  int steps_since_renewal_ = never;
   std::int64_t renewals_ = 0;
   double seconds_renewing_ = 0;
 };

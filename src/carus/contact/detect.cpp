@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t probe_chunk = 256;
 constexpr int normals_every = 8;  // steps: normals turn slowly against the step
 constexpr int renew_every = 400;  // steps at most, so that folds find their new partner
-constexpr int look_every = 8;     // steps, about: fewer cost looks, more keep probes awake that do not touch
+constexpr int look_every = 4;     // steps, about: fewer cost looks, more keep probes awake that do not touch
 constexpr double awake = -std::numeric_limits<double>::infinity();
 
 Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3& w) {
@@ -74,20 +74,21 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
   const Vec3& p = x[probe.node];
   double best = options_.reach * options_.reach;
   std::int32_t found = -1;
-  grids_[pass.facets].for_each_near(p, surfaces_[pass.nodes].normal[std::size_t(probe.vertex)], best, [&](std::int32_t t) {
-    const mesh::Triangle& f = other.triangles[t];
-    if (!admissible(probe, t)) return;
-    const Vec3 w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
-    const Vec3 d = p - interpolate(x, f, w);
-    const double d2 = d.squaredNorm();
-    if (d2 > best || (d2 == best && t >= found)) return;  // of equals the first: the order of search says nothing
-    const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
-    if (depth > options_.max_depth) return;
-    best = d2, found = t;
-  });
+  grids_[pass.facets].for_each_near(p, surfaces_[pass.nodes].normal[std::size_t(probe.vertex)], best,
+                                    [&](std::int32_t t) {
+                                      const mesh::Triangle& f = other.triangles[t];
+                                      if (!admissible(probe, t)) return;
+                                      const Vec3 w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
+                                      const Vec3 d = p - interpolate(x, f, w);
+                                      const double d2 = d.squaredNorm();
+                                      if (d2 > best || (d2 == best && t >= found))
+                                        return;  // of equals the first: the order of search says nothing
+                                      const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
+                                      if (depth > options_.max_depth) return;
+                                      best = d2, found = t;
+                                    });
   if (found < 0) probe.impulse = 0;
   probe.triangle = found;
-  probe.sleeps_until = awake;
 }
 
 void Contact::renew(const std::vector<Vec3>& x) {
@@ -97,23 +98,31 @@ void Contact::renew(const std::vector<Vec3>& x) {
   parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
     if (!first && !moves_[s]) return;
     grids_[s].build(x, surfaces_[s].triangles, options_.reach);
-    Motion& m = motion_[s];
-    m.at_renewal.clear();
-    for (const auto n : surfaces_[s].nodes) m.at_renewal.push_back(x[n]);
-    m.at_look = m.at_renewal;
-    m.net = m.travel = 0;
   });
   parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
     for (std::size_t i = b; i < e; ++i) renew_probe(probes_[i], x);
   });
-  near_.clear();
-  for (std::size_t i = 0; i < probes_.size(); ++i) {
-    if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
-  }
-  afresh_ = false;
+  for (Motion& m : motion_) m.before = 0;
+  begin_stretch(x);
   steps_since_renewal_ = 0;
   ++renewals_;
   seconds_renewing_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Everything is looked at anew from here on, and motion counted from here.
+void Contact::begin_stretch(const std::vector<Vec3>& x) {
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    Motion& m = motion_[s];
+    m.at_start.clear();
+    for (const auto n : surfaces_[s].nodes) m.at_start.push_back(x[n]);
+    m.at_look = m.at_start;
+    m.net = m.travel = 0;
+  }
+  near_.clear();
+  for (std::size_t i = 0; i < probes_.size(); ++i) {
+    probes_[i].sleeps_until = awake;
+    if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
+  }
 }
 
 void Contact::measure_motion(const std::vector<Vec3>& x) {
@@ -123,7 +132,7 @@ void Contact::measure_motion(const std::vector<Vec3>& x) {
     double net = 0, step = 0;
     for (std::size_t v = 0; v < m.at_look.size(); ++v) {
       const Vec3& p = x[surfaces_[s].nodes[v]];
-      net = std::max(net, (p - m.at_renewal[v]).squaredNorm());
+      net = std::max(net, (p - m.at_start[v]).squaredNorm());
       step = std::max(step, (p - m.at_look[v]).squaredNorm());
       m.at_look[v] = p;
     }
@@ -139,34 +148,33 @@ void Contact::update_normals(const std::vector<Vec3>& x) {
 }
 
 /// Walks over the facets from the last one to the nearest.
-Vec3 Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
+Contact::Foot Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
   const Surface& other = surfaces_[passes_[probe.pass].facets];
   const Vec3& p = x[probe.node];
-  const auto squared = [&](std::int32_t t, Vec3& w) {
+  const auto foot_on = [&](std::int32_t t) -> Foot {
     const mesh::Triangle& f = other.triangles[t];
-    w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
-    return (p - interpolate(x, f, w)).squaredNorm();
+    const Vec3 &a = x[f[0]], &b = x[f[1]], &c = x[f[2]];
+    const Vec3 w = mesh::closest_point_weights(p, a, b, c), foot = w[0] * a + w[1] * b + w[2] * c;
+    return {w, foot, (p - foot).squaredNorm()};
   };
-  Vec3 w;
-  double best = squared(probe.triangle, w);
+  Foot best = foot_on(probe.triangle);
   for (int hop = 0; hop < 4; ++hop) {
-    if (w.minCoeff() > 0) break;  // inside the facet: nothing nearer among its neighbours
+    if (best.w.minCoeff() > 0) break;  // inside the facet: nothing nearer among its neighbours
     const std::int32_t here = probe.triangle;
+    const Vec3 w = best.w;
     for (int k = 0; k < 3; ++k) {
       if (w[k] <= 0) continue;  // only round the vertices that carry the foot
       const auto v = std::size_t(other.local[here][k]);
       for (std::int32_t q = other.around_begin[v]; q < other.around_begin[v + 1]; ++q) {
         const std::int32_t t = other.around[std::size_t(q)];
         if (t == here || !admissible(probe, t)) continue;
-        Vec3 wt;
-        const double d2 = squared(t, wt);
-        if (d2 < best * (1 - 1e-12)) best = d2, probe.triangle = t;
+        const Foot foot = foot_on(t);
+        if (foot.squared < best.squared * (1 - 1e-12)) best = foot, probe.triangle = t;
       }
     }
     if (probe.triangle == here) break;
-    best = squared(probe.triangle, w);
   }
-  return w;
+  return best;
 }
 
 /// `clearance`: how far node and facets must move towards each other, at least, before this can become a constraint.
@@ -174,10 +182,10 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
                         double& clearance) const {
   const Pass& pass = passes_[probe.pass];
   const Surface& other = surfaces_[pass.facets];
-  const Vec3 w = follow(probe, x);
+  const Foot nearest = follow(probe, x);
+  const Vec3 &w = nearest.w, &foot = nearest.point;
   const mesh::Triangle& f = other.triangles[probe.triangle];
   const auto& v = other.local[probe.triangle];
-  const Vec3 foot = interpolate(x, f, w);
   const Vec3 d = x[probe.node] - foot;
   Vec3 n = w[0] * other.normal[v[0]] + w[1] * other.normal[v[1]] + w[2] * other.normal[v[2]];
   n.normalize();
@@ -225,11 +233,42 @@ void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {
   c.mass = inverse > 0 ? 1 / inverse : 0;
 }
 
+/// Some pair of surfaces has moved so far since the renewal that what was out of reach may touch before the next look.
+bool Contact::worn_out() const {
+  const double reserve = options_.reach - options_.sagitta_limit - awake_below_;
+  const auto moved = [&](int surface) { return motion_[surface].before + motion_[surface].net; };
+  return std::any_of(passes_.begin(), passes_.end(),
+                     [&](const Pass& p) { return moved(p.nodes) + moved(p.facets) > reserve; });
+}
+
+void Contact::pause(const std::vector<Vec3>& x) {
+  measure_motion(x);
+  for (Motion& m : motion_) m.before += m.net;
+  begin_stretch(x);
+  look_due_ = true;
+}
+
+std::vector<double> Contact::save() const {
+  std::vector<double> saved{double(steps_since_renewal_)};
+  saved.reserve(1 + motion_.size() + 2 * probes_.size());
+  for (const Motion& m : motion_) saved.push_back(m.before);
+  for (const Probe& p : probes_) saved.push_back(p.triangle), saved.push_back(p.impulse);
+  return saved;
+}
+
+void Contact::load(const double* saved, const std::vector<Vec3>& x) {
+  steps_since_renewal_ = int(*saved++);
+  for (Motion& m : motion_) m.before = *saved++;
+  for (Probe& p : probes_) p.triangle = std::int32_t(*saved++), p.impulse = *saved++;
+  begin_stretch(x);
+  look_due_ = true;
+}
+
 /// The data of a contact lie all over the memory, and by the next step the elements have swept them out of the caches:
 /// ask for them a few probes ahead.
 void Contact::fetch_ahead(const std::vector<std::int32_t>& list, std::size_t i, std::size_t end,
                           const std::vector<Vec3>& x) const {
-  constexpr std::size_t far = 12, middle = 8, close = 4;
+  constexpr std::size_t far = 24, middle = 16, close = 8;
   if (i + far < end) __builtin_prefetch(&probes_[std::size_t(list[i + far])]);
   if (i + middle < end) {
     const Probe& p = probes_[std::size_t(list[i + middle])];
@@ -284,19 +323,15 @@ void Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
   dt_ = dt;
   const double closing = 2 * dt * max_speed;  // of two nodes in a step
   const double active_below = options_.activation + closing;
-  bool look = afresh_ || steps_since_renewal_ >= renew_every || awake_below_ - 2 * since_look_ < active_below;
+  const bool look = look_due_ || steps_since_renewal_ >= renew_every || awake_below_ - 2 * since_look_ < active_below;
+  bool normals_due = look_due_ || steps_since_renewal_ % normals_every == 0;
   if (look) {
     awake_below_ = active_below + std::min(look_every * closing, 0.25 * options_.reach);
-    since_look_ = 0;
-    if (!afresh_) measure_motion(x);
-    // What a renewal has left out was beyond reach, on the smooth surface too.
-    const double reserve = options_.reach - options_.sagitta_limit - awake_below_;
-    const bool worn_out = std::any_of(passes_.begin(), passes_.end(), [&](const Pass& p) {
-      return motion_[p.nodes].net + motion_[p.facets].net > reserve;
-    });
-    if (afresh_ || worn_out || steps_since_renewal_ >= renew_every) renew(x);
+    since_look_ = 0, look_due_ = false;
+    measure_motion(x);
+    if (steps_since_renewal_ >= renew_every || worn_out()) renew(x), normals_due = false;
   }
-  if (steps_since_renewal_ > 0 && steps_since_renewal_ % normals_every == 0) update_normals(x);
+  if (normals_due) update_normals(x);
   ++steps_since_renewal_;
   if (look) {
     constrain_all<true>(near_, x, dt, active_below);

@@ -56,14 +56,4 @@ void Contact::solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate) {
   for (const Constraint& c : constraints_) probes_[c.probe].impulse = c.impulse;
 }
 
-std::vector<double> Contact::save() const {
-  std::vector<double> impulses(probes_.size());
-  for (std::size_t i = 0; i < probes_.size(); ++i) impulses[i] = probes_[i].impulse;
-  return impulses;
-}
-
-void Contact::load(const double* impulses) {
-  for (std::size_t i = 0; i < probes_.size(); ++i) probes_[i].impulse = impulses[i];
-}
-
 }  // namespace carus::contact

@@ -42,7 +42,8 @@ class TriangleGrid {
 
  private:
   using Box = Eigen::AlignedBox3d;
-  static constexpr float rounding = 1e-5f;  // of single precision: what is decided here lets pass too much, never too little
+  static constexpr float rounding =
+      1e-5f;  // of single precision: what is decided here lets pass too much, never too little
 
   struct Query {
     const Vec3& p;
@@ -93,13 +94,13 @@ class TriangleGrid {
     }
   }
 
-  std::vector<Box> boxes_;       // per triangle
-  std::vector<Item> of_;         // per triangle
-  std::vector<Cone> cones_;      // per cell
+  std::vector<Box> boxes_;   // per triangle
+  std::vector<Item> of_;     // per triangle
+  std::vector<Cone> cones_;  // per cell
   Box hull_;
   double cell_ = 1;
   std::array<int, 3> n_{0, 0, 0};
-  std::vector<Item> items_;      // per cell
+  std::vector<Item> items_;  // per cell
   std::vector<std::int32_t> begin_, next_;
 };
 

@@ -413,8 +413,9 @@ struct Explicit::Impl {
   void keep() {
     state.rest_length = rest_length.rings();
     state.internal = {work.external, work.contact, work.damping, work.active, work.internal, max_speed};
-    const auto impulses = contact->save();
-    state.internal.insert(state.internal.end(), impulses.begin(), impulses.end());
+    contact->pause(state.x);
+    const auto partners = contact->save();
+    state.internal.insert(state.internal.end(), partners.begin(), partners.end());
     for (const auto& b : blocks) {
       for (const auto& h : b.history) {
         for (const auto& row : h.s_iso) state.internal.insert(state.internal.end(), row, row + fem::lanes);
@@ -422,7 +423,6 @@ struct Explicit::Impl {
       }
     }
     good = state, good_work = work;
-    contact->start_afresh();
     loads_due = true;
   }
 
@@ -430,7 +430,7 @@ struct Explicit::Impl {
     const double* p = state.internal.data();
     work = {p[0], p[1], p[2], p[3], p[4]}, max_speed = p[5];
     p += 6;
-    contact->load(p);
+    contact->load(p, state.x);
     p += contact->save().size();
     for (auto& b : blocks) {
       for (auto& h : b.history) {
@@ -442,7 +442,6 @@ struct Explicit::Impl {
     }
     rest_length.rings() = state.rest_length;
     set_rest_shape();
-    contact->start_afresh();
     loads_due = true;
   }
 };
