@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
   app::add_run(app, status);
   app::add_check(app, status);
   app::add_anatomy(app, status);
+  app::add_study(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

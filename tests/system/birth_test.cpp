@@ -106,6 +106,8 @@ TEST(CommandLine, RefusesBadInputWithStatus2) {
   EXPECT_FALSE(fs::exists(out / "summary.json"));
   EXPECT_EQ(wait_for(start({"check", "/nowhere/scenario.yaml"}, log)), 2);
   EXPECT_NE(text(log).find("/nowhere/scenario.yaml"), std::string::npos);
+  EXPECT_EQ(wait_for(start({"study", reference, "--out", out.string(), "--variants", "drags"}, log)), 2);
+  EXPECT_NE(text(log).find("allowed contact, drag, mesh"), std::string::npos);
 }
 
 TEST(CommandLine, InterruptedAndResumedIsTheSameBitForBit) {

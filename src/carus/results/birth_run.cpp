@@ -71,7 +71,7 @@ class BirthRun {
     events_ = std::make_unique<Events>(o_.out / "events.jsonl", o_.event);
     frames_ = std::make_unique<Frames>(o_.out, model_, observer_.strain(), engine_.facts().labour_per_pseudo);
     write_atomically(o_.out / "scenario.resolved.yaml",
-                     fmt::format("# carus {} ({}), seed {}\n{}", o_.version, o_.commit, scenario_.seed,
+                     fmt::format("{}, seed {}\n{}", build_line(o_.version, o_.commit), scenario_.seed,
                                  scenario::resolved_yaml(scenario_)));
   }
 
@@ -262,6 +262,10 @@ observe::Setup observer_setup(const scenario::Scenario& s, const scenario::Assem
   setup.canal_tangent = [axis](double along) { return axis.tangent(along); };
   setup.contractions = s.loads.contractions;
   return setup;
+}
+
+std::string build_line(const std::string& version, const std::string& commit) {
+  return fmt::format("# carus {} ({})", version, commit);
 }
 
 void prepare_folder(const fs::path& out, bool resume) {

@@ -39,6 +39,9 @@ enum class Outcome { born, not_born, failed, interrupted };
 observe::Setup observer_setup(const scenario::Scenario& scenario, const scenario::Assembly& assembly,
                               const anatomy::Anatomy& anatomy);
 
+/// The beginning of scenario.resolved.yaml, which tells what computed a folder.
+std::string build_line(const std::string& version, const std::string& commit);
+
 /// Makes the folder; unless resuming, removes what an earlier run left in it (only files that a run writes).
 void prepare_folder(const std::filesystem::path& out, bool resume);
 
