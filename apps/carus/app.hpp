@@ -17,6 +17,7 @@ void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_anatomy(CLI::App& app, int& status);
 void add_study(CLI::App& app, int& status);
+void add_bench(CLI::App& app, int& status);
 
 /// The reference anatomy; throws InputError naming the missing option in builds without meshing.
 anatomy::Anatomy build_anatomy(const anatomy::Parameters& parameters);

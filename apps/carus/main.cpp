@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
   app::add_check(app, status);
   app::add_anatomy(app, status);
   app::add_study(app, status);
+  app::add_bench(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

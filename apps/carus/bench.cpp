@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+#include <thread>
+
+#include "app.hpp"
+#include "carus/results/engine.hpp"
+#include "carus/scenario/assemble.hpp"
+#include "scenes.hpp"
+
+namespace carus::app {
+namespace {
+
+struct BenchArguments {
+  std::string scenario = "scenarios/reference.yaml";
+  std::vector<std::string> overrides;
+  int steps = 2000, repeats = 5, threads = 0;
+  bool only_block = false;
+};
+
+using Stages = std::vector<std::pair<std::string, double>>;  ///< [s]; the first is the whole
+
+/// Repeats a measurement and prints for each stage the least time, its share of the whole and how far the slowest
+/// repetition was off.
+template <class Measure>
+void print_scene(const std::string& scene, std::size_t tets, int threads, int repeats, Measure&& measure) {
+  std::vector<std::vector<double>> ns;  // per stage, one per repetition
+  std::vector<std::string> names;
+  for (int k = 0; k < repeats; ++k) {
+    const auto [stages, passes] = measure();
+    ns.resize(stages.size()), names.resize(stages.size());
+    for (std::size_t i = 0; i < stages.size(); ++i) {
+      names[i] = stages[i].first;
+      ns[i].push_back(1e9 * stages[i].second / (double(tets) * double(passes)));
+    }
+  }
+  const double whole = *std::min_element(ns[0].begin(), ns[0].end());
+  for (std::size_t i = 0; i < ns.size(); ++i) {
+    const auto [least, most] = std::minmax_element(ns[i].begin(), ns[i].end());
+    if (*most <= 0) continue;  // a stage that the scene has not
+    fmt::print("{:<34}{:>8}{:>9}  {:<16}{:>8.2f}{:>9.0f} %{:>8.0f} %\n", i == 0 ? scene : "",
+               i == 0 ? fmt::format("{}", tets) : "", i == 0 ? fmt::format("{}", threads) : "", names[i], *least,
+               100 * *least / whole, *least > 0 ? 100 * (*most / *least - 1) : 0);
+  }
+}
+
+double seconds_since(std::chrono::steady_clock::time_point t) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
+}
+
+void bench_kernel(int repeats) {
+  const fem::Model model = bench::block(false);
+  bench::Kernel kernel(model);
+  constexpr int passes = 50;
+  print_scene(fmt::format("element kernel ({})", fem::kernel().name), model.mesh.tets.size(), 1, repeats, [&] {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int k = 0; k < passes; ++k) kernel.forces();
+    return std::pair(Stages{{"whole", seconds_since(begin)}}, passes);
+  });
+}
+
+/// Time of each stage between two readings, with the whole in front.
+Stages between(const Stages& before, const Stages& after, double whole) {
+  Stages out{{"whole", whole}};
+  for (std::size_t i = 0; i < after.size(); ++i) out.emplace_back(after[i].first, after[i].second - before[i].second);
+  return out;
+}
+
+void bench_step(int threads, bool nodal_pressure, int repeats) {
+  const fem::Model model = bench::block(nodal_pressure);
+  const auto options = bench::step_options(threads);
+  solve::Explicit solver(model, options);
+  constexpr int steps = 100;
+  double t = 0;
+  print_scene(nodal_pressure ? "step, average nodal pressure" : "step", model.mesh.tets.size(), threads, repeats, [&] {
+    const auto before = solver.timings();
+    const auto begin = std::chrono::steady_clock::now();
+    solver.advance_to(t += steps * options.time_step);
+    return std::pair(between(before, solver.timings(), seconds_since(begin)), steps);
+  });
+}
+
+/// The first steps of a labour, from rest each time.
+void bench_birth(scenario::Scenario s, const BenchArguments& a, const std::vector<int>& threads) {
+  const auto anatomy = build_anatomy(s.anatomy);
+  const auto assembly = scenario::assemble(s, anatomy);
+  for (const int n : threads) {
+    s.numerics.threads = n;
+    const auto scene = fmt::format("{}, {}, first steps", s.name, scenario::name_of(s.resolution));
+    print_scene(scene, assembly.model.mesh.tets.size(), n, a.repeats, [&] {
+      const auto engine = results::make_engine(s, assembly.model);
+      const auto facts = engine->facts();
+      const auto before = engine->timings();
+      const auto begin = std::chrono::steady_clock::now();
+      engine->advance_to(a.steps * facts.step.time_step * facts.labour_per_pseudo);
+      const double whole = seconds_since(begin);
+      return std::pair(between(before, engine->timings(), whole), int(std::max<std::int64_t>(1, engine->state().step)));
+    });
+  }
+}
+
+std::string processor() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown processor";
+}
+
+void bench_all(const BenchArguments& a) {
+  // Read first: what is wrong with it is not to be told after a minute.
+  const auto s = a.only_block ? scenario::Scenario{} : scenario::load(a.scenario, a.overrides);
+  const int cores = int(std::max(1u, std::thread::hardware_concurrency()));
+  std::vector<int> threads{1};
+  if (const int most = a.threads > 0 ? a.threads : cores; most > 1) threads.push_back(most);
+  double load = 0;
+  const bool known = getloadavg(&load, 1) == 1;
+  fmt::print("carus {} ({}) on {}, {} cores, {}; least of {} repetitions, and how much slower the slowest was\n\n",
+             CARUS_VERSION, CARUS_COMMIT, processor(), cores,
+             known ? fmt::format("load {:.1f} before", load) : "load unknown", a.repeats);
+  fmt::print("{:<34}{:>8}{:>9}  {:<16}{:>8}{:>11}{:>10}\n", "scene", "tets", "threads", "stage", "ns/e/s", "share",
+             "spread");
+  bench_kernel(a.repeats);
+  for (const bool nodal_pressure : {false, true})
+    for (const int n : threads) bench_step(n, nodal_pressure, a.repeats);
+  if (!a.only_block) bench_birth(s, a, threads);
+  fmt::print("\nns/e/s: nanoseconds per element and step.\n");
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app, int& status) {
+  auto a = std::make_shared<BenchArguments>();
+  auto* c = app.add_subcommand("bench", "Measure the solver: time per element and step, by stage");
+  c->add_option("SCENARIO", a->scenario, "Scenario whose first steps are measured; scenarios/reference.yaml if silent");
+  c->add_option("--steps", a->steps, "Steps of the birth; 2000 reach the first contraction")
+      ->check(CLI::Range(1, 10000000));
+  c->add_option("--repeats", a->repeats, "Repetitions of each measurement")->check(CLI::Range(1, 1000));
+  c->add_option("--threads", a->threads, "Measure with one thread and with this many; 0: all")
+      ->check(CLI::Range(0, 1024));
+  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")
+      ->expected(1)
+      ->take_all();
+  c->add_flag("--only-block", a->only_block, "Leave the birth out: no scenario, no meshing");
+  c->footer(
+      "Examples:\n  carus bench\n  carus bench scenarios/reference.yaml --set resolution=coarse --steps 500\n"
+      "  carus bench --only-block --threads 1");
+  c->callback([a, &status] { bench_all(*a), status = done; });
+}
+
+}  // namespace carus::app
