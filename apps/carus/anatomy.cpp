@@ -58,7 +58,7 @@ void print_quality(const anatomy::Anatomy& a) {
   }
 }
 #else
-void print_quality(const anatomy::Anatomy&) {}  // build_anatomy has refused
+void print_quality(const anatomy::Anatomy&) {}  // meshing's report
 #endif
 
 /// Least distances that decide whether anything fits: between the bodies, and of soft tissue between the canal and each
@@ -90,8 +90,8 @@ void print_budget(const anatomy::Anatomy& a) {
 int write_anatomy(const AnatomyArguments& args) {
   const auto s = scenario::load(args.scenario, args.overrides);
   std::filesystem::create_directories(args.out);
-  const auto a = build_anatomy(s.anatomy);
-  const auto files = results::export_anatomy(a, args.out);
+  const auto a = build_anatomy(s);
+  const auto files = results::export_anatomy(a, scenario::anatomy_settings(s), args.out);
   print_measures(a);
   print_quality(a);
   print_budget(a);
@@ -104,8 +104,8 @@ int write_anatomy(const AnatomyArguments& args) {
 
 void add_anatomy(CLI::App& app, int& status) {
   auto a = std::make_shared<AnatomyArguments>();
-  auto* c =
-      app.add_subcommand("anatomy", "Write the organs as STL and VTU with landmarks; print measures and mesh quality");
+  auto* c = app.add_subcommand(
+      "anatomy", "Write the organs as STL and VTU, ready for anatomy.from; print measures and mesh quality");
   c->add_option("SCENARIO", a->scenario, "Scenario file (YAML)")->required();
   c->add_option("--out", a->out, "Folder for the files")->required();
   c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "carus/anatomy/anatomy.hpp"
+#include "carus/scenario/scenario.hpp"
 
 namespace carus::app {
 
@@ -19,7 +19,7 @@ void add_anatomy(CLI::App& app, int& status);
 void add_study(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 
-/// The reference anatomy; throws InputError naming the missing option in builds without meshing.
-anatomy::Anatomy build_anatomy(const anatomy::Parameters& parameters);
+/// A scenario's anatomy, read from anatomy.from or meshed; throws InputError in builds that cannot mesh.
+anatomy::Anatomy build_anatomy(const scenario::Scenario& scenario);
 
 }  // namespace carus::app

@@ -86,7 +86,7 @@ void bench_step(int threads, bool nodal_pressure, int repeats) {
 
 /// The first steps of a labour, from rest each time.
 void bench_birth(scenario::Scenario s, const BenchArguments& a, const std::vector<int>& threads) {
-  const auto anatomy = build_anatomy(s.anatomy);
+  const auto anatomy = build_anatomy(s);
   const auto assembly = scenario::assemble(s, anatomy);
   for (const int n : threads) {
     s.numerics.threads = n;

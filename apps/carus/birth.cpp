@@ -69,7 +69,7 @@ results::Outcome birth(const scenario::Scenario& s, const BirthOptions& options)
   spdlog::info("carus {} ({}): meshing", CARUS_VERSION, CARUS_COMMIT);
   const auto begin = std::chrono::steady_clock::now();
   const parallel::Threads threads(s.numerics.threads);
-  const auto anatomy = logged([&] { return build_anatomy(s.anatomy); });
+  const auto anatomy = logged([&] { return build_anatomy(s); });
   for (const auto& w : anatomy.warnings) spdlog::warn("{}", w);
   const auto assembly = logged([&] { return scenario::assemble(s, anatomy); });
   const auto engine = logged([&] { return results::make_engine(s, assembly.model); });

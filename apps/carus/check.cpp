@@ -11,7 +11,7 @@ namespace {
 int check(const std::string& file, const std::vector<std::string>& overrides) {
   const auto s = scenario::load(file, overrides);
   for (const auto& w : s.warnings) fmt::print("warning: {}\n", w);
-  const auto anatomy = build_anatomy(s.anatomy);
+  const auto anatomy = build_anatomy(s);
   for (const auto& w : anatomy.warnings) fmt::print("warning: {}\n", w);
   int errors = 0;
   for (const auto& finding : scenario::preflight(s, anatomy)) {

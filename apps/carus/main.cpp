@@ -5,17 +5,21 @@
 
 #include "app.hpp"
 #include "carus/core/error.hpp"
+#include "carus/results/import.hpp"
 #ifdef CARUS_WITH_MESHING
 #include "carus/meshing/build.hpp"
 #endif
 
 namespace carus::app {
 
-anatomy::Anatomy build_anatomy([[maybe_unused]] const anatomy::Parameters& parameters) {
+anatomy::Anatomy build_anatomy(const scenario::Scenario& s) {
+  if (!s.anatomy_from.empty()) return results::read_anatomy(s.anatomy_from, s);
 #ifdef CARUS_WITH_MESHING
-  return meshing::build(parameters);
+  return meshing::build(s.anatomy);
 #else
-  throw InputError("anatomy: this build has no meshing (CARUS_MESHING=OFF); configure with -DCARUS_MESHING=ON");
+  throw InputError(s.file +
+                   ": anatomy.from: silent, and this build has no meshing (CARUS_MESHING=OFF); allowed a folder that "
+                   "carus anatomy wrote; or configure with -DCARUS_MESHING=ON");
 #endif
 }
 

@@ -110,6 +110,32 @@ TEST(CommandLine, RefusesBadInputWithStatus2) {
   EXPECT_NE(text(log).find("allowed contact, drag, mesh"), std::string::npos);
 }
 
+TEST(CommandLine, ReadyMeshesGiveTheSameBits) {
+  const fs::path meshes = fresh("meshes"), meshed = fresh("meshed"), ready = fresh("ready");
+  const fs::path log = meshes.string() + ".log";
+  const std::vector<std::string> coarse{"--set", "resolution=coarse"},
+      brief{"--set", "numerics.labour_duration=40 s", "--set", "numerics.pseudo_duration=0.04 s", "--frames", "2"};
+  const auto joined = [](std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  };
+  ASSERT_EQ(wait_for(start(joined({"anatomy", reference, "--out", meshes.string()}, coarse), log)), 0) << text(log);
+  const auto run = [&](const fs::path& out) {
+    return joined(joined({"run", reference, "--out", out.string()}, coarse), brief);
+  };
+  ASSERT_EQ(wait_for(start(run(meshed), log)), 0) << text(log);
+  ASSERT_EQ(wait_for(start(joined(run(ready), {"--set", "anatomy.from=" + meshes.string()}), log)), 0) << text(log);
+  EXPECT_GT(text(ready / "curves.csv").size(), 2000u);
+  EXPECT_EQ(text(meshed / "curves.csv"), text(ready / "curves.csv"));
+  EXPECT_EQ(text(meshed / "frames/frame_0002.vtu"), text(ready / "frames/frame_0002.vtu"));
+  // Other dimensions than the meshes': refused.
+  EXPECT_EQ(
+      wait_for(start(joined(run(ready), {"--set", "anatomy.from=" + meshes.string(), "--set", "canal.radius=41.5 mm"}),
+                     log)),
+      2);
+  EXPECT_NE(text(log).find("was meshed with canal.radius"), std::string::npos) << text(log);
+}
+
 TEST(CommandLine, InterruptedAndResumedIsTheSameBitForBit) {
   const fs::path whole = fresh("whole"), parts = fresh("parts");
   ASSERT_EQ(wait_for(start(short_labour(whole), whole.string() + ".log")), 0) << text(whole.string() + ".log");

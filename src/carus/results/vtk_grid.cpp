@@ -31,9 +31,10 @@ auto* add_array(vtkDataSetAttributes& to, const char* name, int components, std:
 
 }  // namespace
 
-vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const std::vector<mesh::Tet>& tets) {
+vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const std::vector<mesh::Tet>& tets,
+                                              Precision of_points) {
   vtkNew<vtkPoints> points;
-  points->SetDataTypeToFloat();
+  points->SetDataType(of_points == Precision::full ? VTK_DOUBLE : VTK_FLOAT);
   points->SetNumberOfPoints(vtkIdType(x.size()));
   for (std::size_t i = 0; i < x.size(); ++i) points->SetPoint(vtkIdType(i), x[i].data());
   vtkNew<vtkUnstructuredGrid> grid;

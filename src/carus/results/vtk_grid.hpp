@@ -10,8 +10,9 @@
 
 namespace carus::results {
 
-/// Tets on points in single precision.
-vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const std::vector<mesh::Tet>& tets);
+enum class Precision { single, full };
+vtkSmartPointer<vtkUnstructuredGrid> tet_grid(const std::vector<Vec3>& x, const std::vector<mesh::Tet>& tets,
+                                              Precision of_points = Precision::single);
 void set_vectors(vtkDataSetAttributes& to, const char* name, const std::vector<Vec3>& values, double scale = 1);
 void set_scalars(vtkDataSetAttributes& to, const char* name, const std::vector<double>& values);
 void set_integers(vtkDataSetAttributes& to, const char* name, const std::vector<std::int32_t>& values);

@@ -90,18 +90,25 @@ void bind_numerics(Visitor& v, Scenario& s) {
   v("numerics.pseudo_time_factor", n.pseudo_time_factor), v("numerics.time_step", n.time_step),
       v("numerics.safety", n.safety);
   v("numerics.drag", n.drag), v("numerics.drag_factor", n.drag_factor), v("numerics.max_node_speed", n.max_node_speed);
-  v("numerics.mesh_factor", n.mesh_factor), v("numerics.threads", n.threads);
+  v("numerics.threads", n.threads);
   v("output.frames", s.output.frames), v("output.curve_interval", s.output.curve_interval);
   v("output.run_after_birth", s.output.run_after_birth);
 }
 
 template <class Visitor>
-void bind(Visitor& v, Scenario& s) {
-  v("name", s.name), v("description", s.description), v("seed", s.seed);
+void bind_resolution(Visitor& v, Scenario& s) {
   v.choice("resolution", s.resolution,
            {{"coarse", Resolution::coarse}, {"paper", Resolution::paper}, {"fine", Resolution::fine}});
+  v("numerics.mesh_factor", s.numerics.mesh_factor);
+}
+
+template <class Visitor>
+void bind(Visitor& v, Scenario& s) {
+  v("name", s.name), v("description", s.description), v("seed", s.seed);
+  bind_resolution(v, s);
   v.list("calibrated", s.calibrated,
          [&](const std::string& item, Calibration& c) { v(item + ".key", c.key), v(item + ".to", c.to); });
+  v("anatomy.from", s.anatomy_from);
   bind_anatomy(v, s.anatomy);
   for (const char* region : {"skull", "fetal_body", "neck", "fetal_skin", "uterine_fundus", "uterine_body",
                              "lower_segment", "vaginal_canal", "abdomen", "levator_ani", "perineal_body", "bone"})

@@ -66,6 +66,11 @@ Scenario build(Raw root, const std::filesystem::path& file, const std::vector<st
   bind(reader, s);
   if (s.name.empty()) s.name = file.stem().string();
   s.warnings = std::move(warnings);
+  if (!s.anatomy_from.empty()) {  // beside the file that names it; on the command line, from where one stands
+    const std::string& by = settings.files.at("anatomy.from");
+    const auto folder = by == "--set" ? std::filesystem::path() : std::filesystem::path(by).parent_path();
+    s.anatomy_from = std::filesystem::absolute(folder / s.anatomy_from).lexically_normal().string();
+  }
   problems = inconsistencies(s, settings);
   if (!problems.empty()) throw InputError(problems);
 

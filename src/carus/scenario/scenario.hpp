@@ -77,6 +77,7 @@ struct Scenario {
   Resolution resolution = Resolution::paper;
   int seed = 1;
   std::vector<Calibration> calibrated;
+  std::string anatomy_from;     ///< folder of ready meshes; empty: mesh `anatomy`
   anatomy::Parameters anatomy;  ///< its mesh sizes follow from `resolution` and `numerics.mesh_factor`
   std::map<std::string, material::Material> materials;  ///< by region; "bone" for all bones
   Loads loads;
@@ -101,6 +102,9 @@ Scenario parse(const std::string& yaml, const std::filesystem::path& file,
 
 /// Every key of the schema with its value and unit; parses back to exactly the same scenario.
 std::string resolved_yaml(const Scenario& scenario);
+
+/// The keys that the meshes depend on, each with its value as resolved_yaml writes it.
+std::map<std::string, std::string> anatomy_settings(const Scenario& scenario);
 
 /// Options of the explicit solver, with the multipliers of drag and pseudo-time applied.
 solve::ExplicitOptions explicit_options(const Scenario& scenario);

@@ -58,7 +58,6 @@ class Emitter {
 
   [[nodiscard]] const std::string& text() const { return text_; }
 
- private:
   [[nodiscard]] std::string value(const Key& key, const std::string& path) const {
     const auto& v = settings_.values.at(path);
     switch (key.type) {
@@ -80,6 +79,7 @@ class Emitter {
     CARUS_ASSERT(false);
   }
 
+ private:
   /// Items are flat maps: [{g: 0.5, tau: 150 s}].
   [[nodiscard]] std::string list(const Key& key, const std::string& path) const {
     std::vector<std::string> items;
@@ -98,6 +98,18 @@ class Emitter {
 };
 
 }  // namespace
+
+std::map<std::string, std::string> anatomy_settings(const Scenario& scenario) {
+  Scenario copy = scenario;
+  Collector collector;
+  bind_resolution(collector, copy);
+  bind_anatomy(collector, copy.anatomy);
+  const Emitter emitter(collector.settings);
+  std::map<std::string, std::string> out;
+  for (const Leaf& leaf : leaves(schema()))
+    if (collector.settings.values.contains(leaf.path)) out[leaf.path] = emitter.value(*leaf.key, leaf.path);
+  return out;
+}
 
 std::string resolved_yaml(const Scenario& scenario) {
   Scenario copy = scenario;  // a visitor may write; this one only reads
