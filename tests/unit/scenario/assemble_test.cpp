@@ -358,7 +358,31 @@ TEST(Assemble, EverythingMissingIsNamedAtOnce) {
     ASSERT_EQ(error.problems().size(), 4u) << error.what();
     EXPECT_EQ(error.problems()[0], "anatomy: uterus.inner: no such surface, or it is empty; the model needs it");
     EXPECT_EQ(error.problems()[1], "anatomy: abdomen.back: no such set of nodes, or it is empty; the model needs it");
+    EXPECT_EQ(
+        error.problems()[2],
+        "anatomy: coccyx_hinge: no such landmark; coccyx.model hinge needs it; set coccyx.model to elastic or fixed");
+    EXPECT_EQ(error.problems()[3].find("anatomy: uterine_wall: 0 frames; allowed one per element of the uterus, "), 0u);
   }
+}
+
+TEST(Assemble, WhatOnlySomeScenariosNeedIsNamed) {
+  const auto message = [](const Scenario& s, const anatomy::Anatomy& a) -> std::string {
+    try {
+      assemble(s, a);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  anatomy::Anatomy a = small_anatomy();
+  a.fetus.mesh.labels[0] = 77;
+  EXPECT_EQ(message(scenario(), a), "anatomy: fetus: label 77 has no material; allowed the regions of materials");
+  a = small_anatomy();
+  a.uterine_wall.clear();
+  const std::string passive = "uterus.retraction.enabled=false";
+  EXPECT_EQ(message(scenario({passive}), a), "");
+  EXPECT_EQ(message(scenario({passive, "materials.uterine_body.fibre.k1=10 kPa"}), a),
+            "anatomy: uterine_wall: no frames; materials with fibres need one per element of the uterus");
 }
 
 TEST(Preflight, GoodAnatomyPassesAndBadOnesAreTold) {
@@ -384,6 +408,19 @@ TEST(Preflight, GoodAnatomyPassesAndBadOnesAreTold) {
   EXPECT_TRUE(any(preflight(scenario(), a), "error: fetus.skin to uterus.inner: the least gap is 0.000 mm"));
   std::swap(a.uterus.mesh.tets[7][0], a.uterus.mesh.tets[7][1]);
   EXPECT_TRUE(any(preflight(scenario(), a), "error: uterus: 1 of "));
+  a.fetus.mesh = {}, a.fetus.surfaces.clear();
+  const auto without = preflight(scenario(), a);
+  EXPECT_TRUE(any(without, "error: fetus: has no elements"));
+  EXPECT_TRUE(any(without, "error: fetus: has no surface \"skin\""));
+
+  a = small_anatomy();
+  EXPECT_TRUE(any(preflight(scenario({"contact.search=0.5 mm"}), a), "mm, over contact.search 0.50 mm; they do "));
+  for (Vec3& x : a.fetus.mesh.nodes) x.z() *= 0.01;  // slivers
+  EXPECT_TRUE(any(preflight(scenario(), a), "warning: fetus: element "));
+  a.uterus.surfaces.clear(), a.abdomen.surfaces.clear();
+  const auto bare = preflight(scenario(), a);
+  EXPECT_TRUE(any(bare, "error: uterus: has no surface \"inner\""));
+  EXPECT_TRUE(any(bare, "error: uterus: has no surface \"outer\""));
 }
 
 }  // namespace

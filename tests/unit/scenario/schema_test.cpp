@@ -199,8 +199,13 @@ TEST(Schema, UnknownKeysAreRefusedInEveryMap) {
 }
 
 TEST(Units, QuantitiesReadBackExactly) {
-  for (const char* symbol : {"mm", "kPa", "mmHg", "deg", "us", "N m/rad", "1/s"})
-    for (const double si : {0.0, 1.0 / 3, 1e-5, 12345.678, -0.0457, 6666.119350000001, std::nextafter(0.046, 1.0)}) {
+  std::set<std::string> symbols{"mm", "kPa", "1/min"};
+  for (const Leaf& leaf : leaves(schema()))
+    if (!leaf.key->unit.empty()) symbols.insert(leaf.key->unit);
+  for (const std::string& symbol : symbols)
+    // 55/7 is no double times 1e6: of kPa/mm only Pa/m can write it.
+    for (const double si :
+         {0.0, 1.0 / 3, 1e-5, 12345.678, -0.0457, 6666.119350000001, std::nextafter(0.046, 1.0), 55.0 / 7}) {
       const std::string text = format_quantity(si, symbol);
       const auto parsed = split_quantity(text);
       ASSERT_TRUE(parsed) << text;
