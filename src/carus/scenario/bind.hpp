@@ -104,7 +104,7 @@ void bind_resolution(Visitor& v, Scenario& s) {
 
 template <class Visitor>
 void bind(Visitor& v, Scenario& s) {
-  v("name", s.name), v("description", s.description), v("seed", s.seed);
+  v("name", s.name), v("description", s.description);
   bind_resolution(v, s);
   v.list("calibrated", s.calibrated,
          [&](const std::string& item, Calibration& c) { v(item + ".key", c.key), v(item + ".to", c.to); });

@@ -75,7 +75,6 @@ struct Scenario {
   std::string file;  ///< where it came from, for messages
   std::string name, description;
   Resolution resolution = Resolution::paper;
-  int seed = 1;
   std::vector<Calibration> calibrated;
   std::string anatomy_from;     ///< folder of ready meshes; empty: mesh `anatomy`
   anatomy::Parameters anatomy;  ///< its mesh sizes follow from `resolution` and `numerics.mesh_factor`

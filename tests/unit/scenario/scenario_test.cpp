@@ -200,7 +200,7 @@ TEST(Scenario, FilesThatCannotBeRead) {
             Messages{"s.yaml: extends: \"none.yaml\" cannot be opened; allowed a readable YAML file; check the path"});
   EXPECT_EQ(problems("canal: {radius: 46 mm\n"), Messages{"s.yaml: line 2, column 1: bad YAML: end of map flow not "
                                                           "found; write keys as \"key: value\", indented by spaces"});
-  EXPECT_EQ(problems("seed: 1\nseed: 2\n"), Messages{"s.yaml: seed: given twice; allowed once; delete line 2"});
+  EXPECT_EQ(problems("name: a\nname: b\n"), Messages{"s.yaml: name: given twice; allowed once; delete line 2"});
   EXPECT_EQ(problems("- 1\n").front().substr(0, 54), "s.yaml: (whole file): a list is not a map; allowed the");
   EXPECT_EQ(problems("fetus: {position: OA}\n", {"fetus.position=[oops"}).size(), 1u);
 }
