@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <fstream>
 #include <thread>
 
@@ -116,8 +117,11 @@ void bench_all(const BenchArguments& a) {
   const int cores = int(std::max(1u, std::thread::hardware_concurrency()));
   std::vector<int> threads{1};
   if (const int most = a.threads > 0 ? a.threads : cores; most > 1) threads.push_back(most);
-  fmt::print("carus {} ({}) on {}, {} cores; least of {} repetitions, and how much slower the slowest was\n\n",
-             CARUS_VERSION, CARUS_COMMIT, processor(), cores, a.repeats);
+  double load = 0;
+  const bool known = getloadavg(&load, 1) == 1;
+  fmt::print("carus {} ({}) on {}, {} cores, {}; least of {} repetitions, and how much slower the slowest was\n\n",
+             CARUS_VERSION, CARUS_COMMIT, processor(), cores,
+             known ? fmt::format("load {:.1f} before", load) : "load unknown", a.repeats);
   fmt::print("{:<34}{:>8}{:>9}  {:<16}{:>8}{:>11}{:>10}\n", "scene", "tets", "threads", "stage", "ns/e/s", "share",
              "spread");
   bench_kernel(a.repeats);
