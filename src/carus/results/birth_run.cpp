@@ -71,8 +71,7 @@ class BirthRun {
     events_ = std::make_unique<Events>(o_.out / "events.jsonl", o_.event);
     frames_ = std::make_unique<Frames>(o_.out, model_, observer_.strain(), engine_.facts().labour_per_pseudo);
     write_atomically(o_.out / "scenario.resolved.yaml",
-                     fmt::format("{}\n{}", build_line(o_.version, o_.commit),
-                                 scenario::resolved_yaml(scenario_)));
+                     fmt::format("{}\n{}", build_line(o_.version, o_.commit), scenario::resolved_yaml(scenario_)));
   }
 
   void resume() {

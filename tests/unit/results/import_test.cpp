@@ -96,7 +96,7 @@ TEST(ReadyMeshes, ReadBackBitForBit) {
 
 TEST(ReadyMeshes, AreNotForOtherDimensions) {
   const Folder folder("ready_other");
-  write(folder, scenario::parse("", "s.yaml"));
+  write(folder, scenario::parse("", "s.yaml", {"canal.radius=46 mm", "fetus.position=LOT"}));
   const auto other = scenario::parse("", "s.yaml",
                                      {"canal.radius=50 mm", "resolution=fine", "numerics.mesh_factor=1.5",
                                       "fetus.position=OA", "numerics.drag=1 1/s"});
@@ -120,9 +120,8 @@ TEST(ReadyMeshes, MissingAndWrongFilesAreNamed) {
   write(folder, s);
   fs::remove(folder / "uterus.vtu");
   std::ofstream(folder / "fetus.vtu") << "not a mesh";
-  EXPECT_EQ(problems(folder.path(), s),
-            (Messages{f + "/fetus.vtu: is not a VTU file, or is truncated" + hint,
-                      f + "/uterus.vtu: no such file" + hint}));
+  EXPECT_EQ(problems(folder.path(), s), (Messages{f + "/fetus.vtu: is not a VTU file, or is truncated" + hint,
+                                                  f + "/uterus.vtu: no such file" + hint}));
   write(folder, s);
   fs::copy_file(folder / "abdomen.vtu", folder / "fetus.vtu", fs::copy_options::overwrite_existing);
   fs::copy_file(folder / "fetus.vtu", folder / "uterus.vtu", fs::copy_options::overwrite_existing);

@@ -123,13 +123,20 @@ TEST(Refusals, EveryMisspeltKeyFindsItself) {
 }
 
 TEST(Refusals, AFileNamesItsOwnKeys) {
+  const auto bounds = [](const std::string& path) {
+    for (const Leaf& leaf : leaves(schema()))
+      if (leaf.path == path)
+        return fmt::format("allowed {}; the default is \"{}\"", allowed(*leaf.key), leaf.key->fallback);
+    return "no key " + path;
+  };
   EXPECT_EQ(
       problems("attachments: {canal_bed: {posterior: 5 kPa, laterall: 1 kPa/mm}, canal_blocked: maybe}\n"
                "anatomy: {form: meshes}\n"),
       (Messages{"s.yaml: anatomy.form: unknown key; did you mean anatomy.from?",
                 "s.yaml: attachments.canal_bed.laterall: unknown key; did you mean attachments.canal_bed.lateral?",
                 "s.yaml: attachments.canal_bed.posterior: \"5 kPa\" has the unit kPa, not one of bed "
-                "stiffness (one of Pa/m, kPa/mm); allowed 0 kPa/mm to 1000 kPa/mm; the default is \"5 kPa/mm\"",
+                "stiffness (one of Pa/m, kPa/mm); " +
+                    bounds("attachments.canal_bed.posterior"),
                 "s.yaml: attachments.canal_blocked: \"maybe\" is not a boolean; allowed true or false; the "
                 "default is \"true\""}));
 }

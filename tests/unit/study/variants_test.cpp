@@ -139,7 +139,7 @@ TEST(Variants, ProblemsOfAllRowsNameTheirRow) {
                        {"c", {"uterus.retraction.kind*=2"}, {}},
                        {"d", {"canal.radus*=2"}, {}},
                        {"e", {}, "none.yaml"},
-                       {"f", {"contact.sweeps*=0.5"}, {}}});
+                       {"f", {"numerics.threads=1", "numerics.threads*=0.5"}, {}}});
             }),
             (Messages{
                 "row a: --set: numerics.drag_facto: unknown key; did you mean numerics.drag_factor?",
@@ -148,7 +148,7 @@ TEST(Variants, ProblemsOfAllRowsNameTheirRow) {
                 "quantity; write uterus.retraction.kind=...",
                 "row d: canal.radus: unknown key; did you mean canal.radius?",
                 "row e: \"none.yaml\" cannot be opened; allowed a readable YAML file; check the path",
-                "row f: --set: contact.sweeps: \"1.5\" is not an integer; allowed 1 to 100; the default is \"3\"",
+                "row f: --set: numerics.threads: \"0.5\" is not an integer; allowed 0 to 1024; the default is \"0\"",
             }));
 }
 
