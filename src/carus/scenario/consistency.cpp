@@ -43,6 +43,20 @@ class Check {
                "the occipitofrontal diameter is the longest of the three: raise fetus.occipitofrontal");
   }
 
+  void canal() {
+    const anatomy::CanalParameters& c = s_.anatomy.canal;
+    if (c.vulva_radius > c.radius)
+      refuse("canal.vulva_radius", format_quantity(c.vulva_radius, "mm"),
+             fmt::format("at most {}", format_quantity(c.radius, "mm")),
+             "the canal narrows towards the vulva: raise canal.radius");
+    const double vulva = anatomy::CanalAxis(c).vulva();
+    for (const auto& [path, value] :
+         {std::pair{"canal.taper_start", c.taper_start}, std::pair{"canal.floor_top", c.floor_top}})
+      if (value >= vulva)
+        refuse(path, format_quantity(value, "mm"), fmt::format("below {}", format_quantity(vulva, "mm")),
+               "it lies before the vulva, whose depth canal.bend_start, bend_radius and bend_angle set");
+  }
+
   void material(const std::string& region, const material::Material& m) {
     const std::string path = "materials." + region;
     const bool hooke = m.law == material::Law::hooke_corotated || m.law == material::Law::hooke_small_strain;
@@ -102,6 +116,7 @@ Problems inconsistencies(const Scenario& s, const Settings& settings) {
   Check check(s, settings);
   check.times();
   check.fetus();
+  check.canal();
   for (const auto& [region, material] : s.materials) check.material(region, material);
   check.calibrated();
   check.solver();
