@@ -19,13 +19,22 @@ struct Surface {
   std::vector<std::array<std::int32_t, 3>> local;  ///< triangles in local vertex indices
   std::vector<std::int32_t> around_begin, around;  ///< local vertex -> incident triangles (CSR)
   std::vector<std::uint8_t> on_border;             ///< local vertex lies on an open edge
-  std::vector<std::uint8_t> on_crease;  ///< local vertex of a sharp edge at rest: no smooth surface to stand for
-  std::vector<Vec3> normal;             ///< per local vertex, unit, kept up to date by Contact
-  std::vector<Vec3> facet_normal;       ///< per triangle, twice the area vector
-  std::vector<Vec3> rest_centre;        ///< per triangle
+  /// Unit, kept up to date by Contact. Per local vertex the mean of all facets round it; then, for vertices of edges
+  /// that are sharp at rest, one for each of their sides: the facets round it that lie within 50° of one of them.
+  std::vector<Vec3> normal;
+  std::vector<std::array<std::int32_t, 3>> shade;  ///< per triangle and corner: the normal that stands for its side
+  std::vector<std::int32_t> side_begin;            ///< local vertex -> its sides, in `normal`; none where smooth
+  std::vector<Vec3> facet_normal;                  ///< per triangle, twice the area vector
+  std::vector<Vec3> rest_centre;                   ///< per triangle
+  std::vector<Vec3> rest_normal;                   ///< as `normal`, at rest
 
   Surface(std::string name, mesh::Triangles triangles, const std::vector<Vec3>& rest);
   void update_normals(const std::vector<Vec3>& x);
+  [[nodiscard]] bool on_crease(std::int32_t vertex) const { return side_begin[vertex] < side_begin[vertex + 1]; }
+
+ private:
+  void find_sides();
+  std::vector<std::int32_t> side_facets_begin_, side_facets_;  // side -> its triangles
 };
 
 /// Which surfaces may touch. a == b: self-contact.
@@ -45,7 +54,7 @@ struct Options {
   double reach = 0.010;          ///< [m] distance up to which pairs are looked for at a renewal
   double correction_speed = 1;   ///< [m/s] at most, outward, where penetrated
   double max_depth = 0.004;      ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
-  double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch itself
+  double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch its own other side
   double sagitta_limit = 1e-3;   ///< [m]
   int sweeps = 3;
 };
@@ -142,6 +151,7 @@ class Contact {
   void update_normals(const std::vector<Vec3>& x);
   void renew_probe(Probe& probe, const std::vector<Vec3>& x) const;
   Foot follow(Probe& probe, const std::vector<Vec3>& x) const;
+  bool through_the_wall(const Surface& wall, const Probe& probe, std::int32_t triangle) const;
   bool admissible(const Probe& probe, std::int32_t triangle) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c,
                  double& clearance) const;

@@ -21,6 +21,18 @@ Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3
   return w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
 }
 
+/// Mean normal of the surface where the foot lies on an edge or corner between sides; zero elsewhere.
+Vec3 on_edge_of_sides(const Surface& s, const std::array<std::int32_t, 3>& v, const Vec3& w) {
+  Vec3 mean = Vec3::Zero();
+  if (w.minCoeff() > 0) return mean;
+  for (int k = 0; k < 3; ++k) {
+    if (w[k] <= 0) continue;
+    if (!s.on_crease(v[k])) return Vec3::Zero();
+    mean += w[k] * s.normal[std::size_t(v[k])];
+  }
+  return mean;
+}
+
 }  // namespace
 
 Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest,
@@ -62,10 +74,25 @@ bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
   const Surface& own = surfaces_[pass.nodes];
   const Surface& other = surfaces_[pass.facets];
   // Surfaces that touch face each other; a fold's far side and the back of a thin wall do not.
-  if (own.normal[probe.vertex].dot(other.facet_normal[triangle]) > 0) return false;
-  if (!pass.self) return true;
-  return (other.rest_centre[triangle] - rest_[probe.node]).squaredNorm() >
-         options_.self_exclusion * options_.self_exclusion;
+  // A node of a rim belongs to several sides; their mean faces none of the bodies that they face.
+  const Vec3& facing = other.facet_normal[triangle];
+  bool faces = !own.on_crease(probe.vertex) && own.normal[probe.vertex].dot(facing) <= 0;
+  for (auto s = own.side_begin[probe.vertex]; s < own.side_begin[probe.vertex + 1] && !faces; ++s)
+    faces = own.normal[s].dot(facing) <= 0;
+  if (!faces) return false;
+  return !pass.self || !through_the_wall(own, probe, triangle);
+}
+
+/// A wall's own other side faces its nodes too, and is near them. The same side does so only where it folds, and then
+/// however tightly: all of it may touch but the facets that have the node.
+bool Contact::through_the_wall(const Surface& wall, const Probe& probe, std::int32_t triangle) const {
+  const double near2 = options_.self_exclusion * options_.self_exclusion;
+  if ((wall.rest_centre[triangle] - rest_[probe.node]).squaredNorm() > near2) return false;
+  const auto& t = wall.local[triangle];
+  if (std::find(t.begin(), t.end(), probe.vertex) != t.end() || wall.on_crease(probe.vertex)) return true;
+  const auto& n = wall.shade[triangle];
+  return wall.rest_normal[probe.vertex].dot(wall.rest_normal[n[0]] + wall.rest_normal[n[1]] + wall.rest_normal[n[2]]) <=
+         0;
 }
 
 void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
@@ -74,19 +101,19 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
   const Vec3& p = x[probe.node];
   double best = options_.reach * options_.reach;
   std::int32_t found = -1;
-  grids_[pass.facets].for_each_near(p, surfaces_[pass.nodes].normal[std::size_t(probe.vertex)], best,
-                                    [&](std::int32_t t) {
-                                      const mesh::Triangle& f = other.triangles[t];
-                                      if (!admissible(probe, t)) return;
-                                      const Vec3 w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
-                                      const Vec3 d = p - interpolate(x, f, w);
-                                      const double d2 = d.squaredNorm();
-                                      if (d2 > best || (d2 == best && t >= found))
-                                        return;  // of equals the first: the order of search says nothing
-                                      const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
-                                      if (depth > options_.max_depth) return;
-                                      best = d2, found = t;
-                                    });
+  const Surface& own = surfaces_[pass.nodes];
+  const Vec3 facing = own.on_crease(probe.vertex) ? Vec3::Zero() : own.normal[probe.vertex];
+  grids_[pass.facets].for_each_near(p, facing, best, [&](std::int32_t t) {
+    const mesh::Triangle& f = other.triangles[t];
+    if (!admissible(probe, t)) return;
+    const Vec3 w = mesh::closest_point_weights(p, x[f[0]], x[f[1]], x[f[2]]);
+    const Vec3 d = p - interpolate(x, f, w);
+    const double d2 = d.squaredNorm();
+    if (d2 > best || (d2 == best && t >= found)) return;  // of equals the first: the order of search says nothing
+    const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
+    if (depth > options_.max_depth) return;
+    best = d2, found = t;
+  });
   if (found < 0) probe.impulse = 0;
   probe.triangle = found;
 }
@@ -185,9 +212,9 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
   const Foot nearest = follow(probe, x);
   const Vec3 &w = nearest.w, &foot = nearest.point;
   const mesh::Triangle& f = other.triangles[probe.triangle];
-  const auto& v = other.local[probe.triangle];
+  const auto &v = other.local[probe.triangle], &shade = other.shade[probe.triangle];
   const Vec3 d = x[probe.node] - foot;
-  Vec3 n = w[0] * other.normal[v[0]] + w[1] * other.normal[v[1]] + w[2] * other.normal[v[2]];
+  Vec3 n = w[0] * other.normal[shade[0]] + w[1] * other.normal[shade[1]] + w[2] * other.normal[shade[2]];
   n.normalize();
   const double along = d.dot(n);
   // Beyond an open edge the surface has ended: no contact on its continuation.
@@ -199,13 +226,16 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
     clearance = along > 0 ? d.norm() : std::sqrt(beside2) + 0.1 * along;
     return false;
   }
-  // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
-  double sagitta = 0;
-  for (int k = 0; k < 3; ++k) {
-    if (!other.on_crease[std::size_t(v[k])])
-      sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(v[k])]);
+  double gap = along;
+  if (const Vec3 m = on_edge_of_sides(other, v, w); m.dot(d) > 0) {
+    // Outside a sharp edge there is no plane, only the edge.
+    gap = d.norm(), n = d / gap;
+  } else {
+    // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
+    double sagitta = 0;
+    for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(shade[k])]);
+    gap -= std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   }
-  const double gap = along - std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   if (gap > active_below || gap < -options_.max_depth) {
     probe.impulse = 0;
     clearance = gap > active_below ? std::min(d.norm(), gap) : -options_.max_depth - gap;
@@ -275,6 +305,7 @@ void Contact::fetch_ahead(const std::vector<std::int32_t>& list, std::size_t i, 
     const Surface& other = surfaces_[passes_[p.pass].facets];
     __builtin_prefetch(&other.triangles[p.triangle]);
     __builtin_prefetch(&other.local[p.triangle]);
+    __builtin_prefetch(&other.shade[p.triangle]);
     __builtin_prefetch(&x[p.node]);
     __builtin_prefetch(&inverse_mass_[p.node]);
   }
@@ -283,7 +314,7 @@ void Contact::fetch_ahead(const std::vector<std::int32_t>& list, std::size_t i, 
     const Surface& other = surfaces_[passes_[p.pass].facets];
     for (int k = 0; k < 3; ++k) {
       __builtin_prefetch(&x[other.triangles[p.triangle][k]]);
-      __builtin_prefetch(&other.normal[std::size_t(other.local[p.triangle][k])]);
+      __builtin_prefetch(&other.normal[std::size_t(other.shade[p.triangle][k])]);
       __builtin_prefetch(&inverse_mass_[other.triangles[p.triangle][k]]);
     }
   }
