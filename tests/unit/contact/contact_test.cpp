@@ -179,5 +179,77 @@ TEST(Contact, OpenEdgeEndsTheSurface) {
   EXPECT_TRUE(contact.constraints().empty());
 }
 
+/// The edges of whole boxes are no curvature: their faces are flat up to the rim.
+TEST(Contact, SharpEdgesKeepTheirSides) {
+  for (const double distance : {5e-5, -3e-5}) {
+    const auto b = two(shapes::box({-0.05, -0.05, -0.05}, {0.1, 0.1, 0.05}, 5, 5, 3, 0),
+                       shapes::box({-0.027, -0.031, distance}, {0.05, 0.06, 0.04}, 4, 4, 4, 1));
+    auto contact = make(b, 1e-3);
+    contact.detect(b.mesh.nodes, 1e-5, 0);
+    EXPECT_GE(contact.constraints().size(), 25u);
+    EXPECT_NEAR(contact.least_gap(), distance, 1e-12);
+  }
+}
+
+/// A wedge's edge, where two sides meet, beside a plate that one of the sides faces: the mean of the sides does not.
+TEST(Contact, RimTouchesWhatOneOfItsSidesFaces) {
+  std::vector<Vec3> x;
+  for (const double y : {0.0, 0.01, 0.02}) {
+    x.emplace_back(0, y, 0);                                          // the edge
+    x.emplace_back(-0.002, y, 0.02), x.emplace_back(0.002, y, 0.02);  // left and right above it
+  }
+  mesh::Triangles wedge, plate;
+  for (int i = 0; i < 6; i += 3) {
+    wedge.push_back({i, i + 1, i + 3}), wedge.push_back({i + 1, i + 4, i + 3});  // towards -x
+    wedge.push_back({i, i + 3, i + 2}), wedge.push_back({i + 2, i + 3, i + 5});  // towards +x
+  }
+  const Vec3 normal = Vec3(-1, 0, -0.15).normalized(), up(0.15, 0, -1), foot = -5e-5 * normal + Vec3(0, 0.01, 0);
+  const auto first = std::int32_t(x.size());
+  x.push_back(foot - 0.03 * Vec3::UnitY() - 0.03 * up), x.push_back(foot + 0.03 * Vec3::UnitY() - 0.03 * up);
+  x.push_back(foot + 0.05 * up);
+  plate.push_back({first, first + 1, first + 2});
+  if ((x[first + 1] - x[first]).cross(x[first + 2] - x[first]).dot(normal) < 0) std::swap(plate[0][1], plate[0][2]);
+  const std::vector<Vec3> inverse(x.size(), Vec3::Constant(1e3));
+  Contact contact({Surface("wedge", wedge, x), Surface("plate", plate, x)}, {{0, 1, 0}}, x, inverse,
+                  std::vector<std::int16_t>(x.size(), -1), {}, {});
+  contact.detect(x, 1e-5, 0);
+  const auto& found = contact.constraints();
+  ASSERT_TRUE(std::any_of(found.begin(), found.end(), [](const Constraint& c) { return c.node == 3; }));
+  EXPECT_NEAR(contact.least_gap(), 5e-5, 1e-9);
+}
+
+/// A sheet folded flat on itself touches itself right up to the fold, far inside the rest distance that keeps the two
+/// sides of a wall apart.
+TEST(Contact, TightFoldTouchesItself) {
+  constexpr int n = 20;  // facets of 2 mm on either side of the fold
+  constexpr double h = 0.002, gap = 5e-5;
+  std::vector<Vec3> rest, x;
+  for (int i = -n; i <= n; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      rest.emplace_back(i * h, j * h, 0);
+      x.emplace_back(-std::abs(i) * h, j * h, i > 0 ? gap : 0.0);  // upper half turned over: faces down
+    }
+  }
+  mesh::Triangles sheet;
+  for (int i = 0; i < 2 * n; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const int a = 3 * i + j;
+      sheet.push_back({a, a + 3, a + 1}), sheet.push_back({a + 3, a + 4, a + 1});
+    }
+  }
+  const std::vector<Vec3> inverse(x.size(), Vec3::Constant(1e3));
+  Contact contact({Surface("sheet", sheet, rest)}, {{0, 0, 0}}, rest, inverse, std::vector<std::int16_t>(x.size(), -1),
+                  {}, {});
+  contact.detect(x, 1e-5, 0);
+  int close = 0;  // between 4 and 10 mm from the fold: less than 20 mm apart at rest
+  for (const Constraint& c : contact.constraints()) {
+    const double s = std::abs(rest[std::size_t(c.node)].x());
+    if (s < 0.0039 || s > 0.0099) continue;
+    ++close;
+    EXPECT_NEAR(c.gap, gap, 1e-9);
+  }
+  EXPECT_GE(close, 2 * 3 * 3);
+}
+
 }  // namespace
 }  // namespace carus::contact
