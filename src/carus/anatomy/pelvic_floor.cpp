@@ -8,7 +8,7 @@ namespace {
 
 constexpr double levator_front = pi / 6;    // the sheet's arms end beside the urethra
 constexpr double perineal_half_angle = 0.8;  // rad from the midline behind
-constexpr double perineal_height = 0.030;    // from the vulva up [m]
+constexpr double perineal_height = 0.022;    // from the vulva up, clear of the coccyx [m]
 constexpr double thinnest = 0.25;            // of its thickness, at the borders
 
 }  // namespace

@@ -331,7 +331,11 @@ class Assembler {
     };
     pair(skin, uterus);
     for (const int other : hard) pair(uterus, other);
-    pair(uterus, uterus);                            // the fundus folds behind the breech
+    // The fundus folds behind the breech and may follow it into the canal; the floor's layers cannot meet each other.
+    const Triangles floor = mesh::boundary(a_.uterus.mesh, [](std::int32_t l) { return l > anatomy::vaginal_canal; });
+    const int wall = surface("wall", filtered(shifted(mesh::boundary(a_.uterus.mesh), out_.bodies.at(a_.uterus.name)),
+                                              shifted(floor, out_.bodies.at(a_.uterus.name)), false));
+    pair(wall, wall);
     for (const int other : hard) pair(skin, other);  // below the vulva
   }
 
