@@ -56,7 +56,7 @@ struct UterusParameters {
 struct AbdomenParameters {
   double wall = 0.030;  ///< thickness of the trunk round the uterus
   double gap = 0.0008;  ///< cavity to uterus at the start
-  double levator_thickness = 0.006, perineal_body_thickness = 0.020;
+  double levator_thickness = 0.006, perineal_body_thickness = 0.024;
 };
 struct FetusParameters {
   double biparietal = 0.0935, occipitofrontal = 0.116, suboccipitobregmatic = 0.095;

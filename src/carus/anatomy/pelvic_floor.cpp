@@ -6,9 +6,9 @@
 namespace carus::anatomy {
 namespace {
 
-constexpr double levator_front = pi / 6;    // the sheet's arms end beside the urethra
+constexpr double levator_front = -pi / 12;  // in front of it the rami of the pubis leave no room beside the head
 constexpr double perineal_half_angle = 0.8;  // rad from the midline behind
-constexpr double perineal_height = 0.022;    // from the vulva up, clear of the coccyx [m]
+constexpr double perineal_height = 0.027;     // from the vulva up, to below the coccyx [m]
 constexpr double thinnest = 0.25;            // of its thickness, at the borders
 
 }  // namespace

@@ -2,7 +2,12 @@
 // The element pass for one instruction set. Included by element_kernel_{portable,avx2,avx512}.cpp inside a namespace of
 // their own, so that no inline function of one instruction set can be picked by the linker for another.
 
+#ifdef __AVX512F__
 using Lanes = material::Float16;
+#else
+using Lanes = material::Float8;
+#endif
+constexpr int width = sizeof(Lanes) / sizeof(float);  // of a register; a batch is one or two of them
 using Tensor = material::Mat3T<Lanes>;
 
 struct Nodal {
@@ -43,10 +48,38 @@ inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
     add(l + 12, _mm512_extractf32x4_ps(r[l], 3));
   }
 }
+#elif defined(__AVX2__)
+// The same with two 128-bit halves: lanes l and l+4.
+inline Nodal gather(const Float4* x, const std::int32_t* node) {
+  const auto pair = [&](int l) {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_load_ps(x[node[l]].v)), _mm_load_ps(x[node[l + 4]].v), 1);
+  };
+  const __m256 a = pair(0), b = pair(1), c = pair(2), d = pair(3);
+  const __m256 ab = _mm256_unpacklo_ps(a, b), cd = _mm256_unpacklo_ps(c, d);
+  const __m256 ab_z = _mm256_unpackhi_ps(a, b), cd_z = _mm256_unpackhi_ps(c, d);
+  return {(Lanes)_mm256_shuffle_ps(ab, cd, 0x44), (Lanes)_mm256_shuffle_ps(ab, cd, 0xee),
+          (Lanes)_mm256_shuffle_ps(ab_z, cd_z, 0x44)};
+}
+
+inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
+  const __m256 x = (__m256)g.x, y = (__m256)g.y, z = (__m256)g.z, o = _mm256_setzero_ps();
+  const __m256 xy = _mm256_unpacklo_ps(x, y), zo = _mm256_unpacklo_ps(z, o);
+  const __m256 xy_h = _mm256_unpackhi_ps(x, y), zo_h = _mm256_unpackhi_ps(z, o);
+  const __m256 r[4] = {_mm256_shuffle_ps(xy, zo, 0x44), _mm256_shuffle_ps(xy, zo, 0xee),
+                       _mm256_shuffle_ps(xy_h, zo_h, 0x44), _mm256_shuffle_ps(xy_h, zo_h, 0xee)};
+  const auto add = [&](int lane, __m128 v) {
+    float* p = f[node[lane]].v;
+    _mm_store_ps(p, _mm_add_ps(_mm_load_ps(p), v));
+  };
+  for (int l = 0; l < 4; ++l) {
+    add(l, _mm256_castps256_ps128(r[l]));
+    add(l + 4, _mm256_extractf128_ps(r[l], 1));
+  }
+}
 #else
 inline Nodal gather(const Float4* x, const std::int32_t* node) {
-  alignas(64) float b[3][lanes];
-  for (int l = 0; l < lanes; ++l) {
+  alignas(64) float b[3][width];
+  for (int l = 0; l < width; ++l) {
     const float* p = x[node[l]].v;
     b[0][l] = p[0], b[1][l] = p[1], b[2][l] = p[2];
   }
@@ -55,7 +88,7 @@ inline Nodal gather(const Float4* x, const std::int32_t* node) {
 }
 
 inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
-  for (int l = 0; l < lanes; ++l) {
+  for (int l = 0; l < width; ++l) {
     float* p = f[node[l]].v;
     p[0] += g.x[l], p[1] += g.y[l], p[2] += g.z[l];
   }
@@ -64,15 +97,15 @@ inline void scatter_add(Float4* f, const std::int32_t* node, const Nodal& g) {
 
 inline Lanes load(const float* p) { return *reinterpret_cast<const Lanes*>(p); }
 
-/// F = Ds B with Ds the current edges from node 0.
-inline Tensor deformation_gradient(const Batch& b, const Float4* x) {
-  const Nodal x0 = gather(x, b.node[0]);
+/// F = Ds B with Ds the current edges from node 0, of the batch's lanes from `first`.
+inline Tensor deformation_gradient(const Batch& b, int first, const Float4* x) {
+  const Nodal x0 = gather(x, b.node[0] + first);
   Lanes F[9] = {};
   for (int a = 1; a < 4; ++a) {
-    const Nodal xa = gather(x, b.node[a]);
+    const Nodal xa = gather(x, b.node[a] + first);
     const Lanes d[3] = {xa.x - x0.x, xa.y - x0.y, xa.z - x0.z};
     for (int j = 0; j < 3; ++j) {
-      const Lanes B = load(b.B[3 * (a - 1) + j]);
+      const Lanes B = load(b.B[3 * (a - 1) + j] + first);
       for (int i = 0; i < 3; ++i) F[3 * i + j] += d[i] * B;
     }
   }
@@ -80,50 +113,53 @@ inline Tensor deformation_gradient(const Batch& b, const Float4* x) {
 }
 
 /// H = -V P B^T: columns are the forces on nodes 1..3, node 0 takes the opposite of their sum.
-inline void add_forces(const Batch& b, const Tensor& P, Float4* f) {
-  const Lanes V = load(b.volume);
+inline void add_forces(const Batch& b, int first, const Tensor& P, Float4* f) {
+  const Lanes V = load(b.volume + first);
   Nodal sum{Lanes{}, Lanes{}, Lanes{}};
   for (int a = 1; a < 4; ++a) {
-    const Lanes B0 = load(b.B[3 * (a - 1)]) * V, B1 = load(b.B[3 * (a - 1) + 1]) * V,
-                B2 = load(b.B[3 * (a - 1) + 2]) * V;
+    const Lanes B0 = load(b.B[3 * (a - 1)] + first) * V, B1 = load(b.B[3 * (a - 1) + 1] + first) * V,
+                B2 = load(b.B[3 * (a - 1) + 2] + first) * V;
     const Nodal g{-(P.m00 * B0 + P.m01 * B1 + P.m02 * B2), -(P.m10 * B0 + P.m11 * B1 + P.m12 * B2),
                   -(P.m20 * B0 + P.m21 * B1 + P.m22 * B2)};
-    scatter_add(f, b.node[a], g);
+    scatter_add(f, b.node[a] + first, g);
     sum.x -= g.x, sum.y -= g.y, sum.z -= g.z;
   }
-  scatter_add(f, b.node[0], sum);
+  scatter_add(f, b.node[0] + first, sum);
 }
 
 inline Lanes all(float v) { return Lanes{} + v; }
 
-inline Lanes nodal_mean(const float* p, const Batch& b) {
+inline Lanes nodal_mean(const float* p, const Batch& b, int first) {
   Lanes s{};
-  for (int l = 0; l < lanes; ++l)
-    s[l] = 0.25f * (p[b.node[0][l]] + p[b.node[1][l]] + p[b.node[2][l]] + p[b.node[3][l]]);
+  for (int l = 0; l < width; ++l) {
+    const int k = first + l;
+    s[l] = 0.25f * (p[b.node[0][k]] + p[b.node[1][k]] + p[b.node[2][k]] + p[b.node[3][k]]);
+  }
   return s;
 }
 
 using Stress = material::Sym3T<Lanes>;
 
-inline Stress load(const float (&rows)[6][lanes]) {
-  return {load(rows[0]), load(rows[1]), load(rows[2]), load(rows[3]), load(rows[4]), load(rows[5])};
+inline Stress load(const float (&rows)[6][lanes], int first) {
+  return {load(rows[0] + first), load(rows[1] + first), load(rows[2] + first),
+          load(rows[3] + first), load(rows[4] + first), load(rows[5] + first)};
 }
-inline void store(const Stress& s, float (&rows)[6][lanes]) {
+inline void store(const Stress& s, float (&rows)[6][lanes], int first) {
   const Lanes* from[6] = {&s.xx, &s.yy, &s.zz, &s.yz, &s.xz, &s.xy};
-  for (int k = 0; k < 6; ++k) *reinterpret_cast<Lanes*>(rows[k]) = *from[k];
+  for (int k = 0; k < 6; ++k) *reinterpret_cast<Lanes*>(rows[k] + first) = *from[k];
 }
 
 /// Maxwell branches on the isochoric second Piola-Kirchhoff stress; P holds the instantaneous isochoric stress and is
 /// relaxed.
 inline void relax(const Tensor& F, const Tensor& cof, const Lanes& J, const KernelMaterial& m, BatchHistory* history,
-                  Tensor& P) {
+                  int first, Tensor& P) {
   const Stress now = material::second_piola(cof, J, P);
   Stress S = now;
   for (int term = 0; term < m.prony_terms; ++term) {
-    Stress h = load(history[term].h);
-    material::relax(m.prony[term], now, load(history[term].s_iso), h, S);
-    store(h, history[term].h);
-    store(now, history[term].s_iso);
+    Stress h = load(history[term].h, first);
+    material::relax(m.prony[term], now, load(history[term].s_iso, first), h, S);
+    store(h, history[term].h, first);
+    store(now, history[term].s_iso, first);
   }
   P = material::first_piola_of(F, S);
 }
@@ -133,40 +169,43 @@ inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, con
                         Float4* f, const float* pressure, BatchHistory* history) {
   KernelReport report;
   Lanes min_J = all(1e30f);
-  for (std::size_t e = 0; e < n; ++e) {
+  for (std::size_t part = 0; part < n * (lanes / width); ++part) {
+    const std::size_t e = part / (lanes / width);
+    const int first = int(part % (lanes / width)) * width;
     const Batch& b = batches[e];
-    const Tensor F = deformation_gradient(b, x);
+    const Tensor F = deformation_gradient(b, first, x);
     const Lanes J1 = Law::volume_strain(F);
-    const Lanes p = pressure ? nodal_mean(pressure, b) : Law::volume_pressure(all(m.bulk), J1);
+    const Lanes p = pressure ? nodal_mean(pressure, b, first) : Law::volume_pressure(all(m.bulk), J1);
     Tensor P;
     if constexpr (fibres || prony) {
       law.first_piola(F, J1, Lanes{}, P);
       if constexpr (fibres) {
         Tensor along;
-        const material::Vec3T<Lanes> a{load(b.fibre[0]), load(b.fibre[1]), load(b.fibre[2])};
+        const material::Vec3T<Lanes> a{load(b.fibre[0] + first), load(b.fibre[1] + first),
+                                           load(b.fibre[2] + first)};
         // Fibres measure the true volume, whatever the matrix does.
         material::Fibre<Lanes>(all(m.k1), all(m.k2), a)
             .first_piola(F, material::FiniteVolume<Lanes>::volume_strain(F), Lanes{}, along);
         P += along;
       }
       const Tensor cof = Law::volume_gradient(F);
-      if constexpr (prony) relax(F, cof, J1 + 1.0f, m, history + e * std::size_t(m.prony_terms), P);
+      if constexpr (prony) relax(F, cof, J1 + 1.0f, m, history + e * std::size_t(m.prony_terms), first, P);
       P += cof * p;
     } else {
       law.first_piola(F, J1, p, P);
     }
-    add_forces(b, P, f);
+    add_forces(b, first, P, f);
     min_J = J1 < min_J ? J1 : min_J;
     const auto bad = ~(J1 > all(-1.0f));  // NaN compares false: it is bad too
     int any = 0;
-    for (int l = 0; l < lanes; ++l) any |= bad[l];
+    for (int l = 0; l < width; ++l) any |= bad[l];
     if (any) [[unlikely]] {
-      for (int l = 0; l < lanes; ++l) {
-        if (bad[l] && b.volume[l] > 0) ++report.inverted, report.worst_element = b.element[l];
+      for (int l = 0; l < width; ++l) {
+        if (bad[l] && b.volume[first + l] > 0) ++report.inverted, report.worst_element = b.element[first + l];
       }
     }
   }
-  for (int l = 0; l < lanes; ++l) report.min_J = std::min(report.min_J, min_J[l] + 1);
+  for (int l = 0; l < width; ++l) report.min_J = std::min(report.min_J, min_J[l] + 1);
   return report;
 }
 
@@ -199,9 +238,11 @@ KernelReport forces(const Batch* batches, std::size_t n, const KernelMaterial& m
 void volumes(const Batch* batches, std::size_t n, const Float4* x, float* current) {
   for (std::size_t e = 0; e < n; ++e) {
     const Batch& b = batches[e];
-    const Lanes quarter = 0.25f * load(b.volume) * material::determinant(deformation_gradient(b, x));
-    for (int a = 0; a < 4; ++a) {
-      for (int l = 0; l < lanes; ++l) current[b.node[a][l]] += quarter[l];
+    for (int first = 0; first < lanes; first += width) {
+      const Lanes quarter = 0.25f * load(b.volume + first) * material::determinant(deformation_gradient(b, first, x));
+      for (int a = 0; a < 4; ++a) {
+        for (int l = 0; l < width; ++l) current[b.node[a][first + l]] += quarter[l];
+      }
     }
   }
 }

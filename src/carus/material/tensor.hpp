@@ -12,16 +12,32 @@
 
 namespace carus::material {
 
-/// 16 elements side by side, in single precision; the laws are written once for this and for double.
+/// 16 or 8 elements side by side, in single precision, one register of AVX-512 or AVX2; the laws are written once for
+/// these and for double. A vector wider than a register is taken apart through memory, at four times the cost.
 typedef float Float16 __attribute__((vector_size(64)));
 typedef std::int32_t Int16 __attribute__((vector_size(64)));
+typedef float Float8 __attribute__((vector_size(32)));
+typedef std::int32_t Int8 __attribute__((vector_size(32)));
+
+template <class T>
+struct IntOf {};
+template <>
+struct IntOf<Float16> {
+  using type = Int16;
+};
+template <>
+struct IntOf<Float8> {
+  using type = Int8;
+};
+template <class T>
+concept Packed = requires { typename IntOf<T>::type; };
 
 template <class T>
 struct ScalarOf {
   using type = T;
 };
-template <>
-struct ScalarOf<Float16> {
+template <Packed T>
+struct ScalarOf<T> {
   using type = float;
 };
 /// The type of a literal that multiplies a T.
@@ -38,18 +54,21 @@ CARUS_INLINE double rcbrt(double x) { return 1.0 / std::cbrt(x); }
 
 /// x^(-1/3) for x > 0, relative error < 3e-7. The exponent divided by -3 as an integer is right within 3.5 %; Newton's
 /// y <- y + y (1 - x y^3)/3 takes the error e to -2 e^2: 2.4e-3, 1.2e-5, 3e-10. No library call, no division.
-CARUS_INLINE Float16 rcbrt(Float16 x) {
-  const Float16 bits = __builtin_convertvector(reinterpret_cast<Int16>(x), Float16);
-  const Int16 guess = __builtin_convertvector(1419908138.0f - bits * (1.0f / 3.0f), Int16);
-  Float16 y = reinterpret_cast<Float16>(guess);
+template <Packed F>
+CARUS_INLINE F rcbrt(F x) {
+  using I = typename IntOf<F>::type;
+  const F bits = __builtin_convertvector(reinterpret_cast<I>(x), F);
+  const I guess = __builtin_convertvector(1419908138.0f - bits * (1.0f / 3.0f), I);
+  F y = reinterpret_cast<F>(guess);
   for (int step = 0; step < 3; ++step) y += y * (1.0f - x * y * y * y) * (1.0f / 3.0f);
   return y;
 }
 
 /// x^(1/3) for x > 0.
 CARUS_INLINE double cbrt(double x) { return std::cbrt(x); }
-CARUS_INLINE Float16 cbrt(Float16 x) {
-  const Float16 y = rcbrt(x);
+template <Packed F>
+CARUS_INLINE F cbrt(F x) {
+  const F y = rcbrt(x);
   return x * y * y;
 }
 
@@ -57,25 +76,30 @@ CARUS_INLINE double exp(double x) { return std::exp(x); }
 
 /// e^x for |x| <= 87, relative error < 3e-7; beyond, x is taken at the limit. x = k ln 2 + r, |r| <= ln(2)/2, Taylor to
 /// r^7.
-CARUS_INLINE Float16 exp(Float16 x) {
-  const Float16 limit = constant<Float16>(87);
+template <Packed F>
+CARUS_INLINE F exp(F x) {
+  using I = typename IntOf<F>::type;
+  const F limit = constant<F>(87);
   x = x > limit ? limit : (x < -limit ? -limit : x);
   // Adding and taking away 1.5 * 2^23 rounds to the nearest integer.
-  const Float16 k = (x * 1.44269504f + 12582912.0f) - 12582912.0f;
-  const Float16 r = (x - k * 0.693359375f) + k * 2.12194440e-4f;  // ln 2 in two parts (Cody and Waite)
-  Float16 sum = 1.0f / 720.0f + r * (1.0f / 5040.0f);
+  const F k = (x * 1.44269504f + 12582912.0f) - 12582912.0f;
+  const F r = (x - k * 0.693359375f) + k * 2.12194440e-4f;  // ln 2 in two parts (Cody and Waite)
+  F sum = 1.0f / 720.0f + r * (1.0f / 5040.0f);
   sum = 1.0f / 120.0f + r * sum;
   sum = 1.0f / 24.0f + r * sum;
   sum = 1.0f / 6.0f + r * sum;
   sum = 0.5f + r * sum;
   sum = 1.0f + r * (1.0f + r * sum);
-  const Int16 exponent = (__builtin_convertvector(k, Int16) + 127) << 23;
-  return sum * reinterpret_cast<Float16>(exponent);
+  const I exponent = (__builtin_convertvector(k, I) + 127) << 23;
+  return sum * reinterpret_cast<F>(exponent);
 }
 
 /// <x> = max(x, 0).
 CARUS_INLINE double positive_part(double x) { return x > 0 ? x : 0; }
-CARUS_INLINE Float16 positive_part(Float16 x) { return x > 0 ? x : Float16{}; }
+template <Packed F>
+CARUS_INLINE F positive_part(F x) {
+  return x > 0 ? x : F{};
+}
 
 template <class T>
 struct Vec3T {

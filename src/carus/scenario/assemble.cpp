@@ -317,26 +317,29 @@ class Assembler {
   }
 
   void contacts() {
-    // A facet belongs to one surface of the abdomen only: coccyx before bone before cavity.
-    const Triangles coccyx = bone_surface("coccyx", [](std::int32_t l) { return l == anatomy::coccyx; });
-    const Triangles bone = filtered(
-        bone_surface("bone", [](std::int32_t l) { return is_bone(l) && l != anatomy::coccyx; }), coccyx, false);
-    const Triangles cavity = filtered(filtered(out_.surfaces.at("abdomen.cavity"), bone, false), coccyx, false);
+    // Cavity, bones and coccyx in one: a surface that ends where another goes on lets nodes slip in between.
+    Triangles abdomen = out_.surfaces.at("abdomen.cavity");
+    const auto join = [&](const Triangles& more) {
+      const Triangles fresh = filtered(more, abdomen, false);
+      abdomen.insert(abdomen.end(), fresh.begin(), fresh.end());
+    };
+    join(bone_surface("bone", [](std::int32_t l) { return is_bone(l) && l != anatomy::coccyx; }));
+    join(bone_surface("coccyx", [](std::int32_t l) { return l == anatomy::coccyx; }));
     const int skin = surface("skin", out_.surfaces.at("fetus.skin"));
     // Inside, outside and rim in one: which side a facet faces tells which body it can touch.
     const int uterus = surface("uterus", shifted(mesh::boundary(a_.uterus.mesh), out_.bodies.at(a_.uterus.name)));
-    const std::array hard{surface("cavity", cavity), surface("bone", bone), surface("coccyx", coccyx)};
+    const int hard = surface("abdomen", abdomen);
     const auto pair = [&](int a, int b) {
       if (a >= 0 && b >= 0) model().contact_pairs.push_back({a, b, s_.contact.friction});
     };
     pair(skin, uterus);
-    for (const int other : hard) pair(uterus, other);
+    pair(uterus, hard);
     // The fundus folds behind the breech and may follow it into the canal; the floor's layers cannot meet each other.
     const Triangles floor = mesh::boundary(a_.uterus.mesh, [](std::int32_t l) { return l > anatomy::vaginal_canal; });
     const int wall = surface("wall", filtered(shifted(mesh::boundary(a_.uterus.mesh), out_.bodies.at(a_.uterus.name)),
                                               shifted(floor, out_.bodies.at(a_.uterus.name)), false));
     pair(wall, wall);
-    for (const int other : hard) pair(skin, other);  // below the vulva
+    pair(skin, hard);  // below the vulva
   }
 
   void retraction() {

@@ -211,11 +211,38 @@ TEST(Contact, RimTouchesWhatOneOfItsSidesFaces) {
   if ((x[first + 1] - x[first]).cross(x[first + 2] - x[first]).dot(normal) < 0) std::swap(plate[0][1], plate[0][2]);
   const std::vector<Vec3> inverse(x.size(), Vec3::Constant(1e3));
   Contact contact({Surface("wedge", wedge, x), Surface("plate", plate, x)}, {{0, 1, 0}}, x, inverse,
-                  std::vector<std::int16_t>(x.size(), -1), {}, {});
+                  std::vector<Vec3>(x.size(), Vec3::Zero()), std::vector<std::int16_t>(x.size(), -1), {}, {});
   contact.detect(x, 1e-5, 0);
   const auto& found = contact.constraints();
   ASSERT_TRUE(std::any_of(found.begin(), found.end(), [](const Constraint& c) { return c.node == 3; }));
   EXPECT_NEAR(contact.least_gap(), 5e-5, 1e-9);
+}
+
+/// A node that cannot move along t takes the impulse's part across t alone, and the effective mass knows it.
+TEST(Contact, BlockedDirectionTakesNoSpeed) {
+  const auto b = faces(shapes::box({-0.05, -0.05, -0.05}, {0.1, 0.1, 0.05}, 5, 5, 3, 0),
+                       shapes::box({-0.027, -0.031, 1e-6}, {0.05, 0.06, 0.04}, 4, 4, 4, 1), 0, 1e-6);
+  const double mass = 1e-3;
+  const Vec3 t = Vec3(0, 0.6, 0.8);
+  const std::vector<Vec3> inverse(b.mesh.nodes.size(), Vec3::Constant(1 / mass));
+  Contact contact(b.surfaces, {{0, 1, 0}}, b.mesh.nodes, inverse, std::vector<Vec3>(inverse.size(), t / std::sqrt(mass)),
+                  std::vector<std::int16_t>(inverse.size(), -1), {}, {.sweeps = 400});
+  contact.detect(b.mesh.nodes, 1e-5, 1);
+  // The upper body falls, slid along its free plane so that it obeys its own block.
+  std::vector<Vec3> v(inverse.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < v.size(); ++i)
+    if (b.mesh.nodes[i].z() > 5e-7) v[i] = -(Vec3::UnitZ() - t.z() * t);
+  std::vector<double> rate;
+  contact.solve(v, rate);
+  ASSERT_FALSE(contact.constraints().empty());
+  double impulses = 0;
+  for (const auto& c : contact.constraints()) impulses += c.impulse;
+  EXPECT_GT(impulses, 0);
+  for (const auto& u : v) EXPECT_NEAR(u.dot(t), 0, 1e-12);
+  for (const auto& c : contact.constraints()) {
+    const Vec3 u = v[c.node] - (c.w[0] * v[c.facet[0]] + c.w[1] * v[c.facet[1]] + c.w[2] * v[c.facet[2]]);
+    EXPECT_GE(c.n.dot(u), c.target - 1e-3);
+  }
 }
 
 /// A sheet folded flat on itself touches itself right up to the fold, far inside the rest distance that keeps the two
@@ -238,8 +265,8 @@ TEST(Contact, TightFoldTouchesItself) {
     }
   }
   const std::vector<Vec3> inverse(x.size(), Vec3::Constant(1e3));
-  Contact contact({Surface("sheet", sheet, rest)}, {{0, 0, 0}}, rest, inverse, std::vector<std::int16_t>(x.size(), -1),
-                  {}, {});
+  Contact contact({Surface("sheet", sheet, rest)}, {{0, 0, 0}}, rest, inverse, std::vector<Vec3>(x.size(), Vec3::Zero()),
+                  std::vector<std::int16_t>(x.size(), -1), {}, {});
   contact.detect(x, 1e-5, 0);
   int close = 0;  // between 4 and 10 mm from the fold: less than 20 mm apart at rest
   for (const Constraint& c : contact.constraints()) {
