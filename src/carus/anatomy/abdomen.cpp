@@ -7,6 +7,7 @@ namespace carus::anatomy {
 namespace {
 
 constexpr double funnel = 0.8;         // how fast the widened cavity closes in on the uterus above the inlet
+constexpr double recess = 0.006;       // of the soft tissue in the gaps between the bones [m]
 constexpr double bone_gap = 0.0006;    // more between uterus and bone than between uterus and tissue: facets' sagitta
 
 }  // namespace
@@ -27,6 +28,8 @@ double Abdomen::cavity(const Vec3& x) const {
 std::int32_t Abdomen::tissue(const Vec3& x, double from_uterus) const {
   if (from_uterus > outer_wall(x.z()) || cavity(x) < 0) return outside;
   if (x.z() > 0) return abdomen;
+  // Behind the bones' inner face only: wisps of soft tissue between them would be the first thing that the canal meets.
+  if (pelvis_.channel(x) < recess) return outside;
   const Eigen::Vector2d uv = pelvis_.unroll(x);
   return rectangle(uv.x(), uv.y(), -0.030, 0.056, -0.096, 0.020) < 0 ? abdomen : outside;
 }

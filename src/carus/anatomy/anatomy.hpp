@@ -91,6 +91,9 @@ class CanalAxis {
   [[nodiscard]] double radius(double s) const;
   /// Centre of the canal at rest: before the axis by taper_forward of what it has narrowed.
   [[nodiscard]] Vec3 centre(double s) const;
+  /// Whether x lies on the bend's inner side, nearer to its centre than 0.7 of its radius: there the cross-sections run
+  /// together.
+  [[nodiscard]] bool inside_bend(const Vec3& x) const;
   [[nodiscard]] double vulva() const { return -p_.bend_start + p_.bend_radius * p_.bend_angle; }
 
  private:

@@ -37,6 +37,10 @@ Vec3 CanalAxis::centre(double s) const {
   return point(s) + p_.taper_forward * (p_.radius - radius(s)) * Vec3(0, -t.z(), t.y());
 }
 
+bool CanalAxis::inside_bend(const Vec3& x) const {
+  return x.z() < p_.bend_start && std::hypot(p_.bend_radius - x.y(), p_.bend_start - x.z()) < 0.7 * p_.bend_radius;
+}
+
 CanalCoordinates canal_coordinates(const CanalAxis& axis, const Vec3& x) {
   const double s = axis.nearest(x);
   const Vec3 t = axis.tangent(s);

@@ -185,7 +185,8 @@ class Assembler {
   }
 
   /// The paper, section 3.4: birth chair and thighs; the canal moves only in its transverse plane, which turns with its
-  /// axis, so that the vulva may stretch.
+  /// axis, so that the vulva may stretch. Not so the bend's inner side, where the planes run together and what is held
+  /// between them would be crushed as the head opens the canal.
   void attachments() {
     for (const char* name : {"abdomen.back", "abdomen.thighs"})
       block(set_or_empty(name), fem::Blocked::all);
@@ -195,7 +196,7 @@ class Assembler {
     const anatomy::CanalAxis axis(a_.parameters.canal);
     for (const char* name : {"uterus.vaginal_canal", "abdomen.canal"})
       for (const std::int32_t n : set_or_empty(name))
-        direction[n] = axis.tangent(axis.nearest(model().mesh.nodes[n]));
+        if (!axis.inside_bend(model().mesh.nodes[n])) direction[n] = axis.tangent(axis.nearest(model().mesh.nodes[n]));
   }
 
   void bones() {
