@@ -6,9 +6,9 @@
 namespace carus::anatomy {
 namespace {
 
-constexpr double funnel = 0.8;         // how fast the widened cavity closes in on the uterus above the inlet
-constexpr double recess = 0.006;       // of the soft tissue in the gaps between the bones [m]
-constexpr double bone_gap = 0.0006;    // more between uterus and bone than between uterus and tissue: facets' sagitta
+constexpr double funnel = 0.8;       // how fast the widened cavity closes in on the uterus above the inlet
+constexpr double recess = 0.006;     // of the soft tissue in the gaps between the bones [m]
+constexpr double bone_gap = 0.0006;  // more between uterus and bone than between uterus and tissue: facets' sagitta
 
 }  // namespace
 

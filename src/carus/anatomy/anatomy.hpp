@@ -40,14 +40,14 @@ struct PelvisParameters {
   double spines_depth = 0.060;  ///< of the ischial spines below the inlet, along -z
 };
 struct CanalParameters {
-  double radius = 0.046;       ///< inner radius where the cervix is fully dilated: the upper canal (calibrated)
-  double vulva_radius = 0.020;   ///< inner radius at the vulva, which the head stretches
-  double taper_start = 0.030;    ///< s [m] from which the canal narrows down to the vulva
-  double taper_forward = 0.7;    ///< 0: it narrows evenly; 1: from behind only, its front stays where it is
-  double floor_top = 0.060;      ///< s [m] where the pelvic floor begins
-  double bend_radius = 0.080;  ///< radius of the axis' arc round the symphysis
-  double bend_start = -0.045;  ///< z at which the straight part ends
-  double bend_angle = 0.87;    ///< rad, where the canal ends at the vulva
+  double radius = 0.046;        ///< inner radius where the cervix is fully dilated: the upper canal (calibrated)
+  double vulva_radius = 0.020;  ///< inner radius at the vulva, which the head stretches
+  double taper_start = 0.030;   ///< s [m] from which the canal narrows down to the vulva
+  double taper_forward = 0.7;   ///< 0: it narrows evenly; 1: from behind only, its front stays where it is
+  double floor_top = 0.060;     ///< s [m] where the pelvic floor begins
+  double bend_radius = 0.080;   ///< radius of the axis' arc round the symphysis
+  double bend_start = -0.045;   ///< z at which the straight part ends
+  double bend_angle = 0.87;     ///< rad, where the canal ends at the vulva
 };
 struct UterusParameters {
   double wall_fundus = 0.0068, wall_body = 0.0060, wall_lower_segment = 0.0047, wall_canal = 0.0047;

@@ -6,9 +6,9 @@
 namespace carus::anatomy {
 namespace {
 
-constexpr double levator_front = -pi / 12;  // in front of it the rami of the pubis leave no room beside the head
+constexpr double levator_front = -pi / 12;   // in front of it the rami of the pubis leave no room beside the head
 constexpr double perineal_half_angle = 0.8;  // rad from the midline behind
-constexpr double perineal_height = 0.027;     // from the vulva up, to below the coccyx [m]
+constexpr double perineal_height = 0.027;    // from the vulva up, to below the coccyx [m]
 constexpr double thinnest = 0.25;            // of its thickness, at the borders
 
 }  // namespace
@@ -29,7 +29,8 @@ bool PelvicFloor::perineum(const Vec3& x) const {
 
 double PelvicFloor::perineal_thickness(const Vec3& x) const {
   const double side = 1 - smooth_step(0.3 * perineal_half_angle, perineal_half_angle, angle(x) + pi / 2);
-  const double up = smooth_step(axis_.vulva() - perineal_height, axis_.vulva() - 0.4 * perineal_height, axis_.nearest(x));
+  const double up =
+      smooth_step(axis_.vulva() - perineal_height, axis_.vulva() - 0.4 * perineal_height, axis_.nearest(x));
   return p_.perineal_body_thickness * (thinnest + (1 - thinnest) * side * up);
 }
 

@@ -5,8 +5,8 @@
 
 namespace carus::anatomy {
 
-/// What has grown together with the narrow end of the canal, as layers on its outer face: the levator ani, a sheet slung
-/// behind and beside it, and on that, in the midline before the vulva, the perineal body.
+/// What has grown together with the narrow end of the canal, as layers on its outer face: the levator ani, a sheet
+/// slung behind and beside it, and on that, in the midline before the vulva, the perineal body.
 ///
 /// Layers are measured across the axis, from the canal's centre outwards.
 class PelvicFloor {

@@ -81,8 +81,8 @@ struct Constraint {
 ///
 /// Order of calls in a step: `detect` with the positions at its start, `solve` on the predicted velocities.
 /// Deterministic and independent of the number of threads.
-/// The inverse mass of a node is D - b b^T: D by axes (`inverse_mass`), b (`inverse_mass_blocked`) takes away a direction
-/// in which it cannot move.
+/// The inverse mass of a node is D - b b^T: D by axes (`inverse_mass`), b (`inverse_mass_blocked`) takes away a
+/// direction in which it cannot move.
 class Contact {
  public:
   Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest,

@@ -181,8 +181,7 @@ inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, con
       law.first_piola(F, J1, Lanes{}, P);
       if constexpr (fibres) {
         Tensor along;
-        const material::Vec3T<Lanes> a{load(b.fibre[0] + first), load(b.fibre[1] + first),
-                                           load(b.fibre[2] + first)};
+        const material::Vec3T<Lanes> a{load(b.fibre[0] + first), load(b.fibre[1] + first), load(b.fibre[2] + first)};
         // Fibres measure the true volume, whatever the matrix does.
         material::Fibre<Lanes>(all(m.k1), all(m.k2), a)
             .first_piola(F, material::FiniteVolume<Lanes>::volume_strain(F), Lanes{}, along);

@@ -80,7 +80,7 @@ struct Model {
   std::vector<Region> regions;
   std::vector<std::uint8_t> blocked;    ///< per node, Blocked bits
   std::vector<Vec3> blocked_direction;  ///< per node or empty: unit, no motion along it (zero: none)
-  std::vector<Vec3> fibre;            ///< per element or empty
+  std::vector<Vec3> fibre;              ///< per element or empty
   std::vector<Hinge> hinges;
   std::vector<Tether> tethers;
   std::vector<PressureLoad> pressures;

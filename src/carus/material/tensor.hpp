@@ -30,7 +30,9 @@ struct IntOf<Float8> {
   using type = Int8;
 };
 template <class T>
-concept Packed = requires { typename IntOf<T>::type; };
+concept Packed = requires {
+  typename IntOf<T>::type;
+};
 
 template <class T>
 struct ScalarOf {

@@ -99,7 +99,8 @@ Anatomy build(const Parameters& given) {
   const Abdomen abdomen(p, uterus, pelvis);
 
   a.fetus = {"fetus", mesh_fetus(p, fetus, uterus), {}, {}};
-  a.uterus = {"uterus", mesh_wall(uterus, PelvicFloor(p.abdomen, p.canal), p.abdomen.levator_thickness, p.mesh.uterus), {}, {}};
+  a.uterus = {
+      "uterus", mesh_wall(uterus, PelvicFloor(p.abdomen, p.canal), p.abdomen.levator_thickness, p.mesh.uterus), {}, {}};
   a.abdomen = {"abdomen", mesh_abdomen(p, abdomen, uterus, pelvis, fetus), {}, {}};
   name_fetus(a.fetus);
   name_uterus(a.uterus, uterus);

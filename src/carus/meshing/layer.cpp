@@ -30,7 +30,7 @@ std::array<mesh::Tet, 3> split(std::int32_t a, std::int32_t b, std::int32_t c, s
 }  // namespace
 
 mesh::Triangles add_layer(mesh::TetMesh& m, const mesh::Triangles& surface, const Outward& outward,
-               const std::function<std::int32_t(const Vec3&)>& label) {
+                          const std::function<std::int32_t(const Vec3&)>& label) {
   std::unordered_map<std::int32_t, std::int32_t> copy;
   for (const auto i : mesh::nodes_of(surface)) {
     copy[i] = static_cast<std::int32_t>(m.nodes.size());

@@ -15,6 +15,6 @@ using Outward = std::function<Vec3(const Vec3&)>;
 /// tenth of it. Throws NumericalFailure if a prism turns over (the wall is thicker than the surface's radius of
 /// curvature). Returns the layer's outer face.
 mesh::Triangles add_layer(mesh::TetMesh& m, const mesh::Triangles& surface, const Outward& outward,
-               const std::function<std::int32_t(const Vec3&)>& label);
+                          const std::function<std::int32_t(const Vec3&)>& label);
 
 }  // namespace carus::meshing

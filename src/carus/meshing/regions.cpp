@@ -66,8 +66,8 @@ std::vector<std::int32_t> best_node(const mesh::TetMesh& m, const std::vector<st
 }
 
 constexpr double tie_low = 0.010, tie_high = 0.032;  // z of the ring where the lower uterus hangs on the pelvis [m]
-constexpr double hiatus_height = 0.020;  // above the vulva [m]
-constexpr double on_plane = 0.0015;       // [m]
+constexpr double hiatus_height = 0.020;              // above the vulva [m]
+constexpr double on_plane = 0.0015;                  // [m]
 
 }  // namespace
 

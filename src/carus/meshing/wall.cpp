@@ -115,7 +115,8 @@ mesh::TetMesh mesh_wall(const anatomy::Uterus& uterus, const anatomy::PelvicFloo
   auto face = part(m, sheet, [&](const Vec3& x) { return floor.perineum(x); });
   for (int k = 0; k < perineal_layers; ++k)
     face = add_layer(
-        m, face, [&](const Vec3& x) { return Vec3(x + floor.perineal_thickness(x) / perineal_layers * floor.outward(x)); },
+        m, face,
+        [&](const Vec3& x) { return Vec3(x + floor.perineal_thickness(x) / perineal_layers * floor.outward(x)); },
         [](const Vec3&) { return anatomy::perineal_body; });
   return m;
 }

@@ -114,8 +114,8 @@ void sacrum_figures(Figures& f, const Columns& column, const labour::Contraction
 
 void rotation_figures(Figures& f, const Columns& column, std::size_t n) {
   const auto occiput = column("occiput_deg"), turn = column("internal_rotation_deg"),
-             flexion = column("flexion_to_trunk_deg"), occiput_low = column("occiput_below_symphysis_mm"), trunk = column("trunk_rotation_deg"),
-             station = column("station_mm");
+             flexion = column("flexion_to_trunk_deg"), occiput_low = column("occiput_below_symphysis_mm"),
+             trunk = column("trunk_rotation_deg"), station = column("station_mm");
   const auto* crowning = find(f.milestones, "crowning");
   const auto at = crowning ? std::min(crowning->row, occiput.size() - 1) : occiput.size() - 1;
   f.occiput_at_crowning = occiput[at], f.rotation_at_crowning = turn[at];

@@ -39,9 +39,9 @@ struct Figures {
   double occiput_at_crowning = 0;    ///< [deg] from anterior; at the end if it did not crown
   double rotation_at_crowning = 0;   ///< [deg] internal rotation
   double rotation_done_station = 0;  ///< [mm] station where 90 % of that rotation was there
-  double extension = 0;              ///< [deg] of the head against the trunk, most until birth, from its deepest flexion
-  double occiput_at_extension = 0;   ///< [mm] below the lower symphysis when the extension passes 10 deg; 0: it does not
-  double external_rotation = 0;      ///< [deg] of the trunk after birth
+  double extension = 0;             ///< [deg] of the head against the trunk, most until birth, from its deepest flexion
+  double occiput_at_extension = 0;  ///< [mm] below the lower symphysis when the extension passes 10 deg; 0: it does not
+  double external_rotation = 0;     ///< [deg] of the trunk after birth
 };
 
 /// `time` of the end of each plateau, where the head is deepest, and of each start, up to `end` [s].

@@ -188,8 +188,7 @@ class Assembler {
   /// axis, so that the vulva may stretch. Not so the bend's inner side, where the planes run together and what is held
   /// between them would be crushed as the head opens the canal.
   void attachments() {
-    for (const char* name : {"abdomen.back", "abdomen.thighs"})
-      block(set_or_empty(name), fem::Blocked::all);
+    for (const char* name : {"abdomen.back", "abdomen.thighs"}) block(set_or_empty(name), fem::Blocked::all);
     if (!s_.attachments.canal_blocked) return;
     auto& direction = model().blocked_direction;
     direction.assign(model().mesh.nodes.size(), Vec3::Zero());
@@ -258,8 +257,8 @@ class Assembler {
       for (int k = 0; k < 3; ++k) model().tethers.push_back({node, Vec3::Unit(k), part / total * stiffness[k]});
   }
 
-  /// The bed of canal and floor, by the area of their outer face at each node: towards the front behind the axis, along x all
-  /// round. Where the canal is narrow, its bed is deeper by as much, and softer in proportion.
+  /// The bed of canal and floor, by the area of their outer face at each node: towards the front behind the axis, along
+  /// x all round. Where the canal is narrow, its bed is deeper by as much, and softer in proportion.
   void canal_bed() {
     const auto outer = out_.surfaces.find("uterus.outer");
     const double posterior = s_.attachments.bed_posterior, lateral = s_.attachments.bed_lateral;

@@ -131,7 +131,8 @@ void bind(Visitor& v, Scenario& s) {
   v("attachments.lower_uterus_tie.axial", s.attachments.tie_axial),
       v("attachments.lower_uterus_tie.transverse", s.attachments.tie_transverse);
   v("attachments.canal_bed.posterior", s.attachments.bed_posterior),
-      v("attachments.canal_bed.lateral", s.attachments.bed_lateral), v("attachments.canal_bed.depth", s.attachments.bed_depth);
+      v("attachments.canal_bed.lateral", s.attachments.bed_lateral),
+      v("attachments.canal_bed.depth", s.attachments.bed_depth);
   v("attachments.canal_blocked", s.attachments.canal_blocked);
   bind_numerics(v, s);
 }

@@ -225,8 +225,9 @@ TEST(Contact, BlockedDirectionTakesNoSpeed) {
   const double mass = 1e-3;
   const Vec3 t = Vec3(0, 0.6, 0.8);
   const std::vector<Vec3> inverse(b.mesh.nodes.size(), Vec3::Constant(1 / mass));
-  Contact contact(b.surfaces, {{0, 1, 0}}, b.mesh.nodes, inverse, std::vector<Vec3>(inverse.size(), t / std::sqrt(mass)),
-                  std::vector<std::int16_t>(inverse.size(), -1), {}, {.sweeps = 400});
+  Contact contact(b.surfaces, {{0, 1, 0}}, b.mesh.nodes, inverse,
+                  std::vector<Vec3>(inverse.size(), t / std::sqrt(mass)), std::vector<std::int16_t>(inverse.size(), -1),
+                  {}, {.sweeps = 400});
   contact.detect(b.mesh.nodes, 1e-5, 1);
   // The upper body falls, slid along its free plane so that it obeys its own block.
   std::vector<Vec3> v(inverse.size(), Vec3::Zero());
@@ -265,8 +266,8 @@ TEST(Contact, TightFoldTouchesItself) {
     }
   }
   const std::vector<Vec3> inverse(x.size(), Vec3::Constant(1e3));
-  Contact contact({Surface("sheet", sheet, rest)}, {{0, 0, 0}}, rest, inverse, std::vector<Vec3>(x.size(), Vec3::Zero()),
-                  std::vector<std::int16_t>(x.size(), -1), {}, {});
+  Contact contact({Surface("sheet", sheet, rest)}, {{0, 0, 0}}, rest, inverse,
+                  std::vector<Vec3>(x.size(), Vec3::Zero()), std::vector<std::int16_t>(x.size(), -1), {}, {});
   contact.detect(x, 1e-5, 0);
   int close = 0;  // between 4 and 10 mm from the fold: less than 20 mm apart at rest
   for (const Constraint& c : contact.constraints()) {

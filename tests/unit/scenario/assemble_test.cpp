@@ -115,10 +115,11 @@ anatomy::Anatomy small_anatomy() {
   const auto& am = a.abdomen.mesh;
   a.abdomen.surfaces = {{"cavity", where(am, mesh::boundary(am),
                                          [](const Vec3& x) { return x.head<2>().cwiseAbs().maxCoeff() < 2.26 * h; })}};
-  a.abdomen.nodes = {
-      {"back", nodes_where(am, [](const Vec3& x) { return x.y() < -0.07 && x.z() > 0.04; })},
-      {"thighs", nodes_where(am, [](const Vec3& x) { return std::abs(x.x()) > 0.07 && x.y() > 0.07; })},
-      {"canal", nodes_where(am, [](const Vec3& x) { return x.y() > 0.04 && std::abs(x.x()) < 0.04 && x.z() < -0.03; })}};
+  a.abdomen.nodes = {{"back", nodes_where(am, [](const Vec3& x) { return x.y() < -0.07 && x.z() > 0.04; })},
+                     {"thighs", nodes_where(am, [](const Vec3& x) { return std::abs(x.x()) > 0.07 && x.y() > 0.07; })},
+                     {"canal", nodes_where(am, [](const Vec3& x) {
+                        return x.y() > 0.04 && std::abs(x.x()) < 0.04 && x.z() < -0.03;
+                      })}};
   return a;
 }
 
@@ -191,7 +192,8 @@ TEST(Assemble, BonesAndAttachmentsAreBlocked) {
   ASSERT_EQ(m.blocked_direction.size(), m.mesh.nodes.size());
   for (const char* set : {"uterus.vaginal_canal", "abdomen.canal"})
     for (const std::int32_t n : out.node_sets.at(set)) {
-      const Vec3 across = axis.inside_bend(m.mesh.nodes[n]) ? Vec3::Zero() : axis.tangent(axis.nearest(m.mesh.nodes[n]));
+      const Vec3 across =
+          axis.inside_bend(m.mesh.nodes[n]) ? Vec3::Zero() : axis.tangent(axis.nearest(m.mesh.nodes[n]));
       EXPECT_EQ(m.blocked_direction[n], across) << set;
       if (m.mesh.nodes[n].z() > -0.045) {
         EXPECT_EQ(m.blocked_direction[n], -Vec3::UnitZ()) << set;

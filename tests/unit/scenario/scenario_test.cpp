@@ -185,16 +185,17 @@ solver: {kind: implicit}
 }
 
 TEST(Scenario, CanalThatCannotNarrowIsRefused) {
-  EXPECT_EQ(problems("canal: {radius: 40 mm, vulva_radius: 41 mm, bend_start: -30 mm, bend_radius: 60 mm, bend_angle: 0 "
-                     "deg, taper_start: 30 mm, floor_top: 60 mm}\n"),
-            (Messages{
-                "s.yaml: canal.vulva_radius: 41 mm contradicts other keys; allowed at most 40 mm; the canal narrows "
-                "towards the vulva: raise canal.radius",
-                "s.yaml: canal.taper_start: 30 mm contradicts other keys; allowed below 30 mm; it lies before the "
-                "vulva, whose depth canal.bend_start, bend_radius and bend_angle set",
-                "s.yaml: canal.floor_top: 60 mm contradicts other keys; allowed below 30 mm; it lies before the "
-                "vulva, whose depth canal.bend_start, bend_radius and bend_angle set",
-            }));
+  EXPECT_EQ(
+      problems("canal: {radius: 40 mm, vulva_radius: 41 mm, bend_start: -30 mm, bend_radius: 60 mm, bend_angle: 0 "
+               "deg, taper_start: 30 mm, floor_top: 60 mm}\n"),
+      (Messages{
+          "s.yaml: canal.vulva_radius: 41 mm contradicts other keys; allowed at most 40 mm; the canal narrows "
+          "towards the vulva: raise canal.radius",
+          "s.yaml: canal.taper_start: 30 mm contradicts other keys; allowed below 30 mm; it lies before the "
+          "vulva, whose depth canal.bend_start, bend_radius and bend_angle set",
+          "s.yaml: canal.floor_top: 60 mm contradicts other keys; allowed below 30 mm; it lies before the "
+          "vulva, whose depth canal.bend_start, bend_radius and bend_angle set",
+      }));
 }
 
 TEST(Scenario, FilesThatCannotBeRead) {

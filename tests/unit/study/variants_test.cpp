@@ -124,8 +124,8 @@ TEST(Variants, RowsComeAfterTheOverridesAndMayMultiply) {
 }
 
 TEST(Variants, ARowThatIsAnEarlierOneIsComputedOnce) {
-  const auto rows =
-      rows_of(reference, {}, {{"paper", {"resolution=paper"}, {}}, {"coarse", {"resolution=coarse"}, {}}});
+  const auto rows = rows_of(reference, {"resolution=paper"},
+                            {{"paper", {"resolution=paper"}, {}}, {"coarse", {"resolution=coarse"}, {}}});
   EXPECT_EQ(rows[0].same_as, "");
   EXPECT_EQ(rows[1].same_as, "base");
   EXPECT_EQ(rows[2].same_as, "");
