@@ -162,17 +162,6 @@ double Pelvis::sacral(const Vec3& x, double& along) const {
   return rounded_intersection(plate, std::abs(x.x()) - width, edge);
 }
 
-double Pelvis::coccyx_distance(const Vec3& x) const {
-  double along = 0;
-  const double d = sacral(x, along);
-  return std::max(d, hinge_ - along);
-}
-
-double Pelvis::distance(const Vec3& x) const {
-  double along = 0;
-  return std::min(innominate(x), sacral(x, along));
-}
-
 std::int32_t Pelvis::label(const Vec3& x) const {
   double along = 0;
   if (x.y() < -0.01 && sacral(x, along) < 0) return along > hinge_ ? coccyx : sacrum;

@@ -25,11 +25,6 @@ class Pelvis {
   /// Throws InputError if the sagittal lengths cannot meet in a triangle.
   Pelvis(const PelvisParameters& p, const CanalParameters& canal);
   [[nodiscard]] std::int32_t label(const Vec3& x) const;
-  [[nodiscard]] double distance(const Vec3& x) const;  ///< to the nearest bone, first order [m]
-  [[nodiscard]] double coccyx_distance(const Vec3& x) const;
-  [[nodiscard]] double coccyx_level() const {
-    return axis_.nearest({0, coccyx_tip_.x(), coccyx_tip_.y()});
-  }                                                   ///< s of its tip
   [[nodiscard]] double channel(const Vec3& x) const;  ///< to the bony canal's inner face: negative within [m]
   /// Round (from the side to the front, scaled to length) and up: the unrolled inner face.
   [[nodiscard]] Eigen::Vector2d unroll(const Vec3& x) const;
