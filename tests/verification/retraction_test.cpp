@@ -91,6 +91,24 @@ TEST(Retraction, RatchetHoldsWhatContractionsWon) {
   EXPECT_NEAR(fine.height[23], fine.rest_length[23], 0.04);
 }
 
+/// Without load the rest length follows r' = -e0 r/tau; held at its length the muscle shortens to 1 - e0 and stops.
+TEST(Retraction, ShortensUnloadedAndHoldsAtItsIsometricStrain) {
+  for (const bool held : {false, true}) {
+    auto m = tube(20, 12, fem::Retraction::Kind::ratchet);
+    m.retraction.tau = 10, m.retraction.isometric_strain = 0.1;
+    m.retraction.activity = [](double) { return 1.0; };
+    if (held) models::block(m, fem::all, [](const Vec3& X) { return X.z() > length - 1e-9; });
+    auto o = models::real_time(2, 2e-4);
+    o.labour_duration = 50;
+    o.drag = 50 * 100;
+    solve::Explicit s(m, o);
+    s.advance_to(50);
+    const double expected = held ? 0.9 : std::exp(-0.1 * 50 / 10.0), r = s.observe().rest_length_mean;
+    std::printf("muscle %s: rest length %.4f, expected %.4f\n", held ? "held" : "unloaded", r, expected);
+    EXPECT_NEAR(r, expected, held ? 0.01 : 0.03);  // the fixed end's hoop resists; held: exp(-5) of the way is left
+  }
+}
+
 TEST(Retraction, ImposedRestLengthIsTaken) {
   auto m = tube(20, 12, fem::Retraction::Kind::imposed);
   m.retraction.imposed = [](double t) { return 1 - 0.4 * std::min(1.0, t / 60); };

@@ -55,6 +55,7 @@ struct Options {
   double correction_speed = 1;   ///< [m/s] at most, outward, where penetrated
   double max_depth = 0.004;      ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
   double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch its own other side
+  double fold_depth = 3e-4;      ///< [m] and below which what lies deeper is a ridge, not a fold pressed together
   double sagitta_limit = 1e-3;   ///< [m]
   int sweeps = 3;
 };
@@ -151,7 +152,9 @@ class Contact {
   void update_normals(const std::vector<Vec3>& x);
   void renew_probe(Probe& probe, const std::vector<Vec3>& x) const;
   Foot follow(Probe& probe, const std::vector<Vec3>& x) const;
+  [[nodiscard]] bool near_itself(const Probe& probe, std::int32_t triangle) const;
   bool through_the_wall(const Surface& wall, const Probe& probe, std::int32_t triangle) const;
+  [[nodiscard]] double deepest(const Probe& probe, std::int32_t triangle) const;
   bool admissible(const Probe& probe, std::int32_t triangle) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c,
                  double& clearance) const;

@@ -83,11 +83,23 @@ bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
   return !pass.self || !through_the_wall(own, probe, triangle);
 }
 
+bool Contact::near_itself(const Probe& probe, std::int32_t triangle) const {
+  const Pass& pass = passes_[probe.pass];
+  const double near2 = options_.self_exclusion * options_.self_exclusion;
+  return pass.self && (surfaces_[pass.facets].rest_centre[triangle] - rest_[probe.node]).squaredNorm() <= near2;
+}
+
+/// How deep behind a facet a node may lie and still be taken to have gone through it. Where a wall bends outwards by
+/// more than a right angle, the two flanks of the ridge face away from each other and each lies behind the other, as
+/// in a fold whose flanks have passed through each other; only those never get far.
+double Contact::deepest(const Probe& probe, std::int32_t triangle) const {
+  return near_itself(probe, triangle) ? options_.fold_depth : options_.max_depth;
+}
+
 /// A wall's own other side faces its nodes too, and is near them. The same side does so only where it folds, and then
 /// however tightly: all of it may touch but the facets that have the node.
 bool Contact::through_the_wall(const Surface& wall, const Probe& probe, std::int32_t triangle) const {
-  const double near2 = options_.self_exclusion * options_.self_exclusion;
-  if ((wall.rest_centre[triangle] - rest_[probe.node]).squaredNorm() > near2) return false;
+  if (!near_itself(probe, triangle)) return false;
   const auto& t = wall.local[triangle];
   if (std::find(t.begin(), t.end(), probe.vertex) != t.end() || wall.on_crease(probe.vertex)) return true;
   const auto& n = wall.shade[triangle];
@@ -111,7 +123,7 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
     const double d2 = d.squaredNorm();
     if (d2 > best || (d2 == best && t >= found)) return;  // of equals the first: the order of search says nothing
     const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
-    if (depth > options_.max_depth) return;
+    if (depth > deepest(probe, t)) return;
     best = d2, found = t;
   });
   if (found < 0) probe.impulse = 0;
@@ -236,9 +248,9 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
     for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(shade[k])]);
     gap -= std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   }
-  if (gap > active_below || gap < -options_.max_depth) {
+  if (const double lowest = -deepest(probe, probe.triangle); gap > active_below || gap < lowest) {
     probe.impulse = 0;
-    clearance = gap > active_below ? std::min(d.norm(), gap) : -options_.max_depth - gap;
+    clearance = gap > active_below ? std::min(d.norm(), gap) : lowest - gap;
     return false;
   }
   clearance = 0;

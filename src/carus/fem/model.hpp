@@ -69,6 +69,7 @@ struct Retraction {
   std::vector<double> strength;              ///< per element, 0..1: how much of the retraction acts here
   double ring_width = 0.02;                  ///< [m] smoothing length of the rest length along s
   double tau = 5;                            ///< [s of labour]
+  double isometric_strain = 0;               ///< elastic strain at which the active muscle only holds (ratchet)
   double floor = 0.2;                        ///< least rest length
   std::function<double(double t)> imposed;   ///< rest length by labour time (imposed)
   std::function<double(double t)> activity;  ///< 0..1 by labour time (ratchet acts during contractions)

@@ -75,7 +75,8 @@ void RestLength::advance(const std::vector<Vec3>& x, double t, double dt) {
   measure(x);
   const double share = 1 - std::exp(-activity * dt / r.tau);
   for (std::size_t k = 0; k < rings_.size(); ++k) {
-    if (stretch_[k] < rings_[k]) rings_[k] = std::max(r.floor, rings_[k] + share * (stretch_[k] - rings_[k]));
+    const double held = stretch_[k] * (1 - r.isometric_strain);
+    if (held < rings_[k]) rings_[k] = std::max(r.floor, rings_[k] + share * (held - rings_[k]));
   }
 }
 

@@ -14,8 +14,10 @@ class RestLength {
   explicit RestLength(const Model& model);
 
   /// Moves the rest length on by dt [s of labour]. Ratchet: it follows the wall's mean meridional stretch per ring
-  /// downwards while the muscle is active, with time constant tau, never back, never below the floor. Imposed: as the
-  /// timetable says.
+  /// downwards while the muscle is active, with time constant tau, never back, never below the floor:
+  ///     dr/dt = -activity (r - (1 - e0) stretch)/tau,   r > (1 - e0) stretch,
+  /// Hill's law made linear: unloaded the muscle shortens by e0/tau, at the elastic strain e0 it only holds. With e0 =
+  /// 0 it follows and takes up no slack. Imposed: as the timetable says.
   void advance(const std::vector<Vec3>& x, double t, double dt);
 
   [[nodiscard]] bool active() const { return model_->retraction.kind != Retraction::Kind::off; }

@@ -24,7 +24,7 @@ using namespace anatomy;
 /// 3).
 constexpr double bag_radius = 0.05;
 constexpr double altitude_of_edge = 0.25;   // what altitudes are raised to, of the edge
-constexpr double coccyx_size = 0.0095;      // [m]
+constexpr double coccyx_size = 0.0060;      // [m]
 constexpr double least_clearance = 0.0007;  // between bodies, whatever the facets [m]
 double sagitta(double h) { return h * h / (6 * bag_radius); }
 

@@ -362,7 +362,7 @@ class Assembler {
       r.strength.push_back(strength);
     }
     r.ring_width = from.ring_width;
-    r.tau = from.tau;
+    r.tau = from.tau, r.isometric_strain = from.isometric_strain;
     r.floor = from.floor;
     r.imposed = [end = from.final, duration = s_.numerics.labour_duration](double t) {
       return 1 + (end - 1) * std::clamp(t / duration, 0.0, 1.0);

@@ -120,8 +120,8 @@ void bind(Visitor& v, Scenario& s) {
   v("uterus.retraction.enabled", r.enabled);
   v.choice("uterus.retraction.kind", r.kind,
            {{"ratchet", fem::Retraction::Kind::ratchet}, {"imposed", fem::Retraction::Kind::imposed}});
-  v("uterus.retraction.tau", r.tau), v("uterus.retraction.floor", r.floor),
-      v("uterus.retraction.ring_width", r.ring_width);
+  v("uterus.retraction.tau", r.tau), v("uterus.retraction.isometric_strain", r.isometric_strain),
+      v("uterus.retraction.floor", r.floor), v("uterus.retraction.ring_width", r.ring_width);
   v("uterus.retraction.final", r.final), v("uterus.retraction.lower_segment_strength", r.lower_segment_strength);
   v("contact.friction", s.contact.friction), v("contact.search", s.contact.search);
   v("contact.correction_speed", s.contact.correction_speed), v("contact.sweeps", s.contact.sweeps);

@@ -33,6 +33,7 @@ struct Retraction {
   bool enabled = true;
   fem::Retraction::Kind kind = fem::Retraction::Kind::ratchet;
   double tau = 0;                     ///< [s of labour]
+  double isometric_strain = 0;        ///< elastic strain at which the active muscle only holds (ratchet)
   double floor = 0;                   ///< least rest length of the ratchet, of the length at the start
   double ring_width = 0;              ///< [m]
   double final = 0;                   ///< rest length at the end of the labour (imposed)

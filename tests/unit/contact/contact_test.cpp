@@ -246,37 +246,51 @@ TEST(Contact, BlockedDirectionTakesNoSpeed) {
   }
 }
 
+/// A sheet of facets of 2 mm, plane at rest with its face up, its middle line along y; `x` places (s, y).
+template <class Place>
+std::pair<Contact, std::vector<Vec3>> sheet(int half, double h, Place place) {
+  std::vector<Vec3> rest, x;
+  for (int i = -half; i <= half; ++i) {
+    for (int j = 0; j < 3; ++j) rest.emplace_back(i * h, j * h, 0), x.push_back(place(i * h, j * h));
+  }
+  mesh::Triangles facets;
+  for (int i = 0; i < 2 * half; ++i) {
+    for (int j = 0; j < 2; ++j) {
+      const int a = 3 * i + j;
+      facets.push_back({a, a + 3, a + 1}), facets.push_back({a + 3, a + 4, a + 1});
+    }
+  }
+  return {Contact({Surface("sheet", facets, rest)}, {{0, 0, 0}}, rest, std::vector<Vec3>(x.size(), Vec3::Constant(1e3)),
+                  std::vector<Vec3>(x.size(), Vec3::Zero()), std::vector<std::int16_t>(x.size(), -1), {}, {}),
+          x};
+}
+
 /// A sheet folded flat on itself touches itself right up to the fold, far inside the rest distance that keeps the two
 /// sides of a wall apart.
 TEST(Contact, TightFoldTouchesItself) {
-  constexpr int n = 20;  // facets of 2 mm on either side of the fold
   constexpr double h = 0.002, gap = 5e-5;
-  std::vector<Vec3> rest, x;
-  for (int i = -n; i <= n; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      rest.emplace_back(i * h, j * h, 0);
-      x.emplace_back(-std::abs(i) * h, j * h, i > 0 ? gap : 0.0);  // upper half turned over: faces down
-    }
-  }
-  mesh::Triangles sheet;
-  for (int i = 0; i < 2 * n; ++i) {
-    for (int j = 0; j < 2; ++j) {
-      const int a = 3 * i + j;
-      sheet.push_back({a, a + 3, a + 1}), sheet.push_back({a + 3, a + 4, a + 1});
-    }
-  }
-  const std::vector<Vec3> inverse(x.size(), Vec3::Constant(1e3));
-  Contact contact({Surface("sheet", sheet, rest)}, {{0, 0, 0}}, rest, inverse,
-                  std::vector<Vec3>(x.size(), Vec3::Zero()), std::vector<std::int16_t>(x.size(), -1), {}, {});
+  auto [contact, x] = sheet(20, h, [](double s, double y) {
+    return Vec3(-std::abs(s), y, s > h / 2 ? gap : 0.0);  // upper half turned over: faces down
+  });
   contact.detect(x, 1e-5, 0);
   int close = 0;  // between 4 and 10 mm from the fold: less than 20 mm apart at rest
   for (const Constraint& c : contact.constraints()) {
-    const double s = std::abs(rest[std::size_t(c.node)].x());
+    const double s = std::abs(c.node / 3 - 20) * h;
     if (s < 0.0039 || s > 0.0099) continue;
     ++close;
     EXPECT_NEAR(c.gap, gap, 1e-9);
   }
   EXPECT_GE(close, 2 * 3 * 3);
+}
+
+/// Bent the other way, to a ridge sharper than a right angle, its flanks face away from each other and lie behind each
+/// other: nothing has gone through anything, and nothing may push.
+TEST(Contact, SharpRidgeDoesNotTouchItself) {
+  auto [contact, x] = sheet(20, 0.002, [](double s, double y) {
+    return Vec3(0.5 * s, y, -0.866 * std::abs(s));  // 60 degrees between the flanks
+  });
+  contact.detect(x, 1e-5, 0);
+  EXPECT_TRUE(contact.constraints().empty());
 }
 
 }  // namespace
