@@ -62,6 +62,17 @@ std::vector<Vec3> midline(const Surface& s, const Vec3& a, const Vec3& b, const 
   return line;
 }
 
+/// The same in the midline and 3 mm beside it: just in the middle, where two bones meet, the mesh may have a groove.
+std::vector<Vec3> about_midline(const Surface& s, const Vec3& a, const Vec3& b, const Vec3& into) {
+  std::vector<Vec3> lines;
+  for (const double beside : {-0.003, 0.0, 0.003}) {
+    const Vec3 off = beside * Vec3::UnitX();
+    const auto line = midline(s, a + off, b + off, into);
+    lines.insert(lines.end(), line.begin(), line.end());
+  }
+  return lines;
+}
+
 double least_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   double least = far;
   for (const auto& p : a)
@@ -133,8 +144,8 @@ void measure_pelvis(Anatomy& a) {
       surface_of(a.abdomen, [](std::int32_t q) { return q == innominate_right || q == innominate_left; });
   const Surface back = surface_of(a.abdomen, [](std::int32_t q) { return q == sacrum || q == coccyx; });
   const auto front_line =
-      midline(pubis, Vec3(0, 0, l.at("symphysis_top").z()), Vec3(0, 0, S.z() - 0.003), Vec3::UnitY());
-  const auto back_line = midline(back, Vec3(0, 0, P.z() + 0.004), Vec3(0, 0, P.z() - 0.012), -Vec3::UnitY());
+      about_midline(pubis, Vec3(0, 0, l.at("symphysis_top").z()), Vec3(0, 0, S.z() - 0.003), Vec3::UnitY());
+  const auto back_line = about_midline(back, Vec3(0, 0, P.z() + 0.004), Vec3(0, 0, P.z() - 0.012), -Vec3::UnitY());
   m["obstetric_conjugate"] = least_distance(front_line, back_line);
   m["transverse_inlet"] = 0;
   for (int k = -10; k <= 10; ++k)
