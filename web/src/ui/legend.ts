@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// On the picture: the colour scale with its unit, the directions of the axes, the length measured.
+import { Vector3 } from 'three';
+import type { Field } from '../data/format';
+import { cssGradient } from '../scene/colormap';
+import { AXIS_COLOURS } from '../scene/overlays';
+import type { Viewer } from '../viewer';
+import { h, svg } from './dom';
+import { numberText, withUnit } from './text';
+
+/** Ticks of a scale: five, at even places. */
+export function scaleTicks(field: Field): { at: number; label: string }[] {
+  const [low, high] = field.scale;
+  return [0, 0.25, 0.5, 0.75, 1].map((f) => {
+    let label = numberText(low + f * (high - low));
+    if (f === 1 && field.max > high + 1e-9) label = `≥ ${label}`;
+    if (f === 0 && field.min < low - 1e-9) label = `≤ ${label}`;
+    return { at: f, label };
+  });
+}
+
+export class ScaleLegend {
+  readonly element = h('div', { class: 'scale', role: 'img' });
+  private shown: Field | undefined | null = null;
+
+  follow(field: Field | undefined): void {
+    if (field === this.shown) return;
+    this.shown = field;
+    this.element.hidden = !field;
+    if (!field) return;
+    const bar = h('div', { class: 'bar' });
+    bar.style.background = cssGradient('to top');
+    const ticks = h('div', { class: 'ticks' });
+    for (const { at, label } of scaleTicks(field)) {
+      const tick = h('span', {}, label);
+      tick.style.bottom = `${100 * at}%`;
+      ticks.append(tick);
+    }
+    this.element.replaceChildren(
+      h('b', {}, field.label),
+      h('span', { class: 'scale-unit' }, field.unit || 'ratio'),
+      h('div', { class: 'scale-body' }, bar, ticks),
+    );
+    this.element.setAttribute(
+      'aria-label',
+      `Colour scale: ${field.label}, from ${numberText(field.scale[0])} (dark) to ${withUnit(numberText(field.scale[1]), field.unit)} (light)`,
+    );
+  }
+}
+
+const NAMES = ['X right', 'Y front', 'Z up'];
+
+/** The axes as the camera sees them. */
+export class Triad {
+  readonly element = svg('svg', {
+    class: 'triad',
+    viewBox: '-50 -50 100 100',
+    role: 'img',
+    'aria-label': 'Axes: X to the right of the mother, Y to the front, Z towards the head',
+  });
+  private arms = NAMES.map((name, axis) => {
+    const colour = `rgb(${AXIS_COLOURS[axis].map((c) => Math.round(255 * c)).join(' ')})`;
+    const arm = svg('line', { x1: 0, y1: 0, stroke: colour, 'stroke-width': 3, 'stroke-linecap': 'round' });
+    const label = svg('text', { 'text-anchor': 'middle', 'dominant-baseline': 'central', fill: 'currentColor', 'font-size': 10 });
+    label.textContent = name;
+    const group = svg('g', {}, arm, label);
+    return { arm, label, group };
+  });
+  private vector = new Vector3();
+  private depth = [0, 0, 0];
+
+  constructor() {
+    this.element.append(...this.arms.map((arm) => arm.group));
+  }
+
+  follow(viewer: Viewer): void {
+    const rotation = viewer.stage.camera.matrixWorldInverse;
+    this.arms.forEach(({ arm, label, group }, axis) => {
+      const v = this.vector.set(0, 0, 0).setComponent(axis, 1).transformDirection(rotation);
+      arm.setAttribute('x2', (27 * v.x).toFixed(1));
+      arm.setAttribute('y2', (-27 * v.y).toFixed(1));
+      label.setAttribute('x', (37 * v.x).toFixed(1));
+      label.setAttribute('y', (-40 * v.y).toFixed(1));
+      group.setAttribute('opacity', Math.hypot(v.x, v.y) < 0.25 ? '0.35' : '1');
+      this.depth[axis] = v.z;
+    });
+  }
+}
+
+export class MeasureLabel {
+  readonly element = h('div', { class: 'measure-label', hidden: true, role: 'status' });
+  private at = { x: 0, y: 0 };
+
+  follow(viewer: Viewer): void {
+    const { measure } = viewer;
+    const shown = measure.complete && viewer.stage.project(measure.middle, this.at);
+    this.element.hidden = !shown;
+    if (!shown) return;
+    const text = `${measure.length_mm.toFixed(1)} mm`;
+    if (this.element.textContent !== text) this.element.textContent = text;
+    this.element.style.transform = `translate(${this.at.x.toFixed(0)}px, ${this.at.y.toFixed(0)}px) translate(-50%, -150%)`;
+  }
+}
