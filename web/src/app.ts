@@ -191,6 +191,7 @@ export class App {
       this.legend.follow(viewer.fieldShown);
       this.showDecoding();
     });
+    viewer.onDecoded = () => this.showDecoding();
     this.legend.follow(viewer.fieldShown);
     this.recolour();
     this.showDecoding();
@@ -216,7 +217,7 @@ export class App {
     const viewer = this.viewer;
     if (viewer) {
       viewer.tick(now, seconds);
-      const waiting = !viewer.body.current || (viewer.fieldShown !== undefined && !viewer.body.fieldCurrent);
+      const { waiting } = viewer;
       const text = waiting
         ? 'Decoding …'
         : viewer.measuring && !viewer.measure.complete
@@ -226,7 +227,7 @@ export class App {
           : '';
       if (this.status.textContent !== text) this.status.textContent = text;
       if (this.recorder.recording) {
-        this.recorder.frame((canvas) => this.composeInto(canvas));
+        this.recorder.frame((canvas) => this.composeInto(canvas, false));
         if (!this.clock.playing) void this.movie();
       }
     }
@@ -283,15 +284,15 @@ export class App {
     }
   }
 
-  private composeInto(canvas: HTMLCanvasElement): void {
+  private composeInto(canvas: HTMLCanvasElement, sharp: boolean): void {
     const style = getComputedStyle(this.picture);
-    compose(canvas, this.viewer!, captionOf(this.viewer!.body.run.info.name, this.clock), style.backgroundColor, style.color);
+    compose(canvas, this.viewer!, captionOf(this.viewer!.body.run.info.name, this.clock), style.backgroundColor, style.color, sharp);
   }
 
   private screenshot(): void {
     if (!this.viewer) return;
     const canvas = h('canvas');
-    this.composeInto(canvas);
+    this.composeInto(canvas, true);
     const name = `${fileName(this.viewer.body.run.info.name, clockText(this.clock.time).replace(':', 'm'))}s.png`;
     canvas.toBlob((blob) => blob && download(name, blob), 'image/png');
   }
@@ -312,7 +313,7 @@ export class App {
     }
     try {
       this.clock.play(true);
-      this.recorder.start(viewer, (canvas) => this.composeInto(canvas));
+      this.recorder.start(viewer, (canvas) => this.composeInto(canvas, false));
       this.toolbar?.recording(true);
     } catch (error) {
       this.tell(`No movie: ${reason(error)}`);

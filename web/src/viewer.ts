@@ -102,10 +102,24 @@ export class Viewer {
 
   onError: (error: Error) => void = () => undefined;
 
+  /** Called when a piece has been decoded, or could not be. */
+  onDecoded: () => void = () => undefined;
+
   private arrived(error?: Error): void {
     if (error) this.onError(error);
-    this.moved = true;
-    for (const listener of this.listeners) listener();
+    if (this.waiting || (this.ghost && !this.ghost.current)) this.moved = true;
+    this.load();
+    this.onDecoded();
+  }
+
+  /** Whether something is shown that is not decoded yet. */
+  get waiting(): boolean {
+    return !this.body.current || (this.field !== undefined && !this.body.fieldCurrent);
+  }
+
+  private load(): void {
+    this.body.run.loadAround(this.clock.time, this.choices.field);
+    this.ghost?.run.loadAround(this.clock.time, '');
   }
 
   /** Measures what there is to see, and frames it the first time. */
@@ -203,8 +217,7 @@ export class Viewer {
   /** Brings the scene to the clock's time if anything changed, and draws. */
   tick(now: number, seconds: number): void {
     const { time } = this.clock;
-    this.body.run.loadAround(time, this.choices.field);
-    this.ghost?.run.loadAround(time, '');
+    this.load();
     if (this.moved) {
       this.moved = false;
       const plane = this.plane();
@@ -219,6 +232,8 @@ export class Viewer {
       this.measure.update(this.body.nodes);
       this.stage.redraw();
     }
+    this.trail?.setPixelRatio(this.stage.pixelRatio);
+    this.measure.setPixelRatio(this.stage.pixelRatio);
     this.stage.tick(now, seconds);
   }
 

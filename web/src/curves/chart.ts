@@ -123,6 +123,7 @@ export class Chart {
     const options: uPlot.Options = {
       width: Math.max(80, this.holder.clientWidth),
       height: HEIGHT,
+      padding: [9, 8, 0, 0],
       legend: { show: false },
       cursor: { y: false, drag: { x: false, y: false }, points: { size: 6 } },
       scales: {
@@ -130,7 +131,7 @@ export class Chart {
         y: { range: (_u, low, high) => this.ordinate(low, high) },
       },
       axes: [
-        { ...axis, size: 30, gap: 3, values: (_u, ticks) => ticks.map((t) => `${+t.toFixed(3)} min`) },
+        { ...axis, size: 24, gap: 2, values: (_u, ticks) => ticks.map((t) => `${+t.toFixed(3)} min`) },
         { ...axis, size: 46, gap: 4, values: (_u, ticks) => ticks.map((t) => numberText(t)) },
       ],
       series: [
@@ -286,8 +287,8 @@ export class Chart {
       ctx.strokeStyle = this.colours.background;
       ctx.lineWidth = 3 * ratio;
       ctx.lineJoin = 'round';
-      ctx.strokeText(label, right - 15 * ratio, y);
-      ctx.fillText(label, right - 15 * ratio, y);
+      ctx.strokeText(label, right - 22 * ratio, y);
+      ctx.fillText(label, right - 22 * ratio, y);
       ctx.lineWidth = ratio;
     }
     ctx.restore();

@@ -49,11 +49,14 @@ export function align(lines: Line[]): uPlot.AlignedData {
   return tables.length === 1 ? tables[0] : uPlot.join(tables);
 }
 
+/** Last rows and last frames differ by rounding [min]. */
+const SLACK = 0.02;
+
 /** A line's value at `minutes`, straight between its samples; NaN outside. */
 export function valueAt(line: Line, minutes: number): number {
   const { x, y } = line;
   const n = x.length;
-  if (!n || minutes < x[0] - 1e-9 || minutes > x[n - 1] + 1e-9) return NaN;
+  if (!n || minutes < x[0] - SLACK || minutes > x[n - 1] + SLACK) return NaN;
   let low = 0;
   let high = n - 1;
   while (high - low > 1) {

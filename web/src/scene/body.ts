@@ -51,8 +51,11 @@ export class Body {
       let look = looks.get(region.name);
       if (!look) looks.set(region.name, (look = lookOf(region)));
       const order = ghostColour ? 8 : Math.max(0, drawingOrder(region));
-      const organ = new Organ(surface, shared, ghostColour ?? look.colour, ghostColour ? 0.22 : look.opacity, order);
-      if (ghostColour) organ.material.uniforms.mapped = { value: 0 };
+      const organ = new Organ(surface, shared, ghostColour ?? look.colour, ghostColour ? 0.26 : look.opacity, order);
+      if (ghostColour) {
+        organ.material.uniforms.mapped = { value: 0 };
+        organ.makeGhost();
+      }
       const entry = { region, organ, look, capColour: new Color(look.colour) };
       this.entries.push(entry);
       this.byRegion.set(region.id, entry);

@@ -102,6 +102,9 @@ export class Caps {
         if (above !== 0 && above !== 15) this.cut(t, above, nodes, values, c);
       }
     }
+    const line = this.lines.material as LineBasicMaterial;
+    line.color.setHex(values ? 0xffffff : 0x1b2230);
+    line.opacity = values ? 0.55 : 0.75;
     this.geometry.setDrawRange(0, this.count);
     for (const name of ['position', 'tint', 'scalar']) {
       const attribute = this.geometry.getAttribute(name) as BufferAttribute;

@@ -5,7 +5,7 @@
 type Lab = [number, number, number];
 
 // Oklab a, b along the scale; L is linear in between the ends.
-const LIGHTNESS = [0.27, 0.94];
+const LIGHTNESS = [0.32, 0.94];
 const HUES: [number, number][] = [
   [0.055, -0.1],
   [0.015, -0.125],

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface of one organ. Its buffers are made once and written in place for every picture.
-import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, Group, Mesh, ShaderMaterial, Sphere, Vector3 } from 'three';
+import { BufferAttribute, BufferGeometry, Color, DynamicDrawUsage, FrontSide, Group, Mesh, ShaderMaterial, Sphere, Vector3 } from 'three';
 import type { Surface } from '../data/surface';
 import { organMaterial, setOpacity, type SharedUniforms } from './material';
 
@@ -49,6 +49,13 @@ export class Organ {
     setOpacity(this.material, opacity);
     this.depthFirst.visible = this.material.transparent;
     (this.depthFirst.material as ShaderMaterial).transparent = this.material.transparent;
+  }
+
+  /** Seen through everything, edges more than faces: for comparison with what is drawn solid. */
+  makeGhost(): void {
+    this.material.depthTest = this.material.depthWrite = false;
+    this.material.side = FrontSide;
+    this.depthFirst.visible = false;
   }
 
   setColour(colour: string): void {

@@ -3,16 +3,22 @@
 import {
   BufferAttribute,
   BufferGeometry,
+  DataTexture,
   DynamicDrawUsage,
   Group,
   Line,
   LineBasicMaterial,
-  LineSegments,
+  LinearFilter,
   Points,
   PointsMaterial,
   Quaternion,
   Vector3,
 } from 'three';
+import { Line2 } from 'three/examples/jsm/lines/Line2.js';
+import { LineGeometry } from 'three/examples/jsm/lines/LineGeometry.js';
+import { LineMaterial } from 'three/examples/jsm/lines/LineMaterial.js';
+import { LineSegments2 } from 'three/examples/jsm/lines/LineSegments2.js';
+import { LineSegmentsGeometry } from 'three/examples/jsm/lines/LineSegmentsGeometry.js';
 import type { Run } from '../data/run';
 import { locate } from './pick';
 import type { MaterialPoint } from './caps';
@@ -23,14 +29,36 @@ function lineMaterial(color: number, opacity: number): LineBasicMaterial {
   return new LineBasicMaterial({ color, opacity, ...over });
 }
 
+const TRAIL = 0xe6501b;
+/** Size of dots in CSS pixels. */
+const DOT = 11;
+
+const wideLine = (color: number, linewidth: number, opacity: number) => new LineMaterial({ color, linewidth, opacity, ...over });
+
+/** Round dots. */
+function dotMaterial(color: number): PointsMaterial {
+  const side = 32;
+  const pixels = new Uint8Array(4 * side * side);
+  for (let i = 0; i < side * side; i++) {
+    const r = Math.hypot((i % side) - 15.5, Math.floor(i / side) - 15.5);
+    pixels.set([255, 255, 255, Math.round(255 * Math.min(1, Math.max(0, 15.5 - r)))], 4 * i);
+  }
+  const map = new DataTexture(pixels, side, side);
+  map.magFilter = LinearFilter;
+  map.needsUpdate = true;
+  return new PointsMaterial({ color, size: DOT, sizeAttenuation: false, map, ...over });
+}
+
 /** Head's path from the curves: the skull's centre at rest plus its displacement. */
 export class Trail {
   readonly object = new Group();
-  readonly axes: LineSegments;
+  private axes: LineSegments2;
   private time: Float32Array;
   private path: Float32Array;
   private turns: Float32Array[] | null;
-  private past: Line;
+  private past: Line2;
+  /** From the last row of the curves to the head. */
+  private newest: Line;
   private marker: Points;
   private trail = new Group();
   /** The head's centre now. */
@@ -54,23 +82,27 @@ export class Trail {
     for (let i = 0; i < rows; i++) for (let a = 0; a < 3; a++) this.path[3 * i + a] = centre.getComponent(a) + xyz[a][i] / 1000;
     const turns = ['head_turn_x_deg', 'head_turn_y_deg', 'head_turn_z_deg'].map((name) => run.curves!.column(name));
     this.turns = turns.every((column) => column) ? (turns as Float32Array[]) : null;
-    const whole = new BufferGeometry().setAttribute('position', new BufferAttribute(this.path, 3));
-    const soFar = new BufferGeometry().setAttribute('position', new BufferAttribute(this.path.slice(), 3).setUsage(DynamicDrawUsage));
-    this.past = new Line(soFar, lineMaterial(0xe6501b, 1));
-    const all = new Line(whole, lineMaterial(0xe6501b, 0.35));
-    const at = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(3), 3));
-    this.marker = new Points(at, new PointsMaterial({ color: 0xe6501b, size: 9, sizeAttenuation: false, ...over }));
-    this.trail.add(all, this.past, this.marker);
-    const arms = new BufferGeometry();
+    const all = new Line2(new LineGeometry().setPositions(this.path), wideLine(TRAIL, 1.5, 0.4));
+    this.past = new Line2(new LineGeometry().setPositions(this.path), wideLine(TRAIL, 3, 1));
+    const ends = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(6), 3).setUsage(DynamicDrawUsage));
+    this.newest = new Line(ends, lineMaterial(TRAIL, 1));
+    const at = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(3), 3).setUsage(DynamicDrawUsage));
+    this.marker = new Points(at, dotMaterial(TRAIL));
+    this.trail.add(all, this.past, this.newest, this.marker);
     const arm = 0.075;
-    arms.setAttribute('position', new BufferAttribute(Float32Array.from([0, 0, 0, arm, 0, 0, 0, 0, 0, 0, arm, 0, 0, 0, 0, 0, 0, arm]), 3));
-    arms.setAttribute('color', new BufferAttribute(Float32Array.from(AXIS_COLOURS.flatMap((c) => [...c, ...c])), 3));
-    this.axes = new LineSegments(arms, new LineBasicMaterial({ vertexColors: true, ...over }));
+    const arms = new LineSegmentsGeometry()
+      .setPositions([0, 0, 0, arm, 0, 0, 0, 0, 0, 0, arm, 0, 0, 0, 0, 0, 0, arm])
+      .setColors(AXIS_COLOURS.flatMap((c) => [...c, ...c]));
+    this.axes = new LineSegments2(arms, new LineMaterial({ vertexColors: true, linewidth: 3, ...over }));
     this.object.add(this.trail, this.axes);
-    for (const thing of [all, this.past, this.marker, this.axes]) {
+    for (const thing of [all, this.past, this.newest, this.marker, this.axes]) {
       thing.frustumCulled = false;
       thing.renderOrder = 200;
     }
+  }
+
+  setPixelRatio(ratio: number): void {
+    (this.marker.material as PointsMaterial).size = DOT * ratio;
   }
 
   show(trail: boolean, axes: boolean): void {
@@ -88,11 +120,12 @@ export class Trail {
     const lerp = (values: Float32Array, stride = 1, at = 0) =>
       values[stride * i + at] + f * (values[stride * j + at] - values[stride * i + at]);
     this.head.set(lerp(this.path, 3, 0), lerp(this.path, 3, 1), lerp(this.path, 3, 2));
-    const soFar = this.past.geometry.getAttribute('position') as BufferAttribute;
-    soFar.copyArray(this.path);
-    soFar.setXYZ(j, this.head.x, this.head.y, this.head.z);
-    soFar.needsUpdate = true;
-    this.past.geometry.setDrawRange(0, j + 1);
+    this.past.geometry.instanceCount = i;
+    this.past.visible = i > 0;
+    const newest = this.newest.geometry.getAttribute('position') as BufferAttribute;
+    newest.setXYZ(0, this.path[3 * i], this.path[3 * i + 1], this.path[3 * i + 2]);
+    newest.setXYZ(1, this.head.x, this.head.y, this.head.z);
+    newest.needsUpdate = true;
     const marker = this.marker.geometry.getAttribute('position') as BufferAttribute;
     marker.setXYZ(0, this.head.x, this.head.y, this.head.z);
     marker.needsUpdate = true;
@@ -144,13 +177,17 @@ export class Measure {
   constructor() {
     const geometry = new BufferGeometry().setAttribute('position', new BufferAttribute(new Float32Array(6), 3).setUsage(DynamicDrawUsage));
     this.line = new Line(geometry, lineMaterial(0x111827, 1));
-    this.dots = new Points(geometry, new PointsMaterial({ color: 0x111827, size: 8, sizeAttenuation: false, ...over }));
+    this.dots = new Points(geometry, dotMaterial(0x111827));
     for (const thing of [this.line, this.dots]) {
       thing.frustumCulled = false;
       thing.renderOrder = 210;
       this.object.add(thing);
     }
     this.clear();
+  }
+
+  setPixelRatio(ratio: number): void {
+    (this.dots.material as PointsMaterial).size = DOT * ratio;
   }
 
   setColour(colour: string): void {

@@ -7,19 +7,20 @@ import { scaleTicks } from '../ui/legend';
 import type { Viewer } from '../viewer';
 import { colourAt } from './colormap';
 
-/** Draws the picture and its caption into `target`. */
-export function compose(target: HTMLCanvasElement, viewer: Viewer, caption: string, background: string, ink: string): void {
-  viewer.stage.drawNow();
+/** Draws the picture and its caption into `target`: in full sharpness and at its size if `sharp`, else as it is into the size that `target` has. */
+export function compose(target: HTMLCanvasElement, viewer: Viewer, caption: string, background: string, ink: string, sharp: boolean): void {
+  viewer.stage.drawNow(sharp);
   const source = viewer.stage.canvas;
-  if (target.width !== source.width || target.height !== source.height) {
+  // A movie keeps the size it began with.
+  if (sharp) {
     target.width = source.width;
     target.height = source.height;
   }
   const ctx = target.getContext('2d')!;
-  const unit = Math.max(1, source.height / 700);
+  const unit = Math.max(1, target.height / 700);
   ctx.fillStyle = background;
   ctx.fillRect(0, 0, target.width, target.height);
-  ctx.drawImage(source, 0, 0);
+  ctx.drawImage(source, 0, 0, target.width, target.height);
   ctx.fillStyle = ink;
   ctx.font = `600 ${16 * unit}px system-ui, sans-serif`;
   ctx.textAlign = 'left';
@@ -58,6 +59,8 @@ export class Recorder {
   }
 
   start(viewer: Viewer, draw: (canvas: HTMLCanvasElement) => void): void {
+    this.canvas.width = viewer.stage.canvas.width;
+    this.canvas.height = viewer.stage.canvas.height;
     draw(this.canvas);
     const type = ['video/webm;codecs=vp9', 'video/webm;codecs=vp8', 'video/webm'].find((t) => MediaRecorder.isTypeSupported(t));
     if (!type) throw new Error('This browser cannot write WebM.');

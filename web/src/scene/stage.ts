@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renderer, camera and its saved views. Draws only when something has changed.
-import { Box3, PerspectiveCamera, Scene, Sphere, Vector3, WebGLRenderer } from 'three';
+import { Box3, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 export type ViewName = 'oblique' | 'front' | 'right' | 'left' | 'back' | 'vulva' | 'above';
@@ -17,6 +17,8 @@ export const VIEWS: Record<ViewName, { label: string; from: [number, number, num
 };
 
 const FIELD_OF_VIEW = 26;
+/** A picture that has not changed for so long stands still. */
+const STILL_MS = 400;
 
 export class Stage {
   readonly scene = new Scene();
@@ -24,18 +26,25 @@ export class Stage {
   readonly controls: OrbitControls;
   readonly renderer: WebGLRenderer;
   readonly canvas: HTMLCanvasElement;
-  private bounds = new Sphere(new Vector3(), 0.3);
+  private bounds = new Box3(new Vector3(-0.2, -0.2, -0.2), new Vector3(0.2, 0.2, 0.2));
   private stale = true;
   private flight: { start: number; from: Vector3; to: Vector3; target: Vector3; fromTarget: Vector3 } | null = null;
   private slow = 0;
-  private ratio = Math.min(2, window.devicePixelRatio || 1);
+  private ratio: number;
+  private fullRatio = Math.min(2, window.devicePixelRatio || 1);
+  /** Pixels per CSS pixel while things move; those that stand still are drawn in full. */
+  private movingRatio: number;
+  private lastDrawn = 0;
   private watcher: ResizeObserver;
   /** Called after each picture. */
   onDrawn: () => void = () => undefined;
 
   /** Throws if the browser has no WebGL 2. */
   constructor(private host: HTMLElement) {
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, powerPreference: 'high-performance' });
+    const software = rendersInSoftware();
+    if (software) this.fullRatio = Math.min(1, this.fullRatio);
+    this.ratio = this.movingRatio = this.fullRatio;
+    this.renderer = new WebGLRenderer({ antialias: !software, alpha: true, powerPreference: 'high-performance' });
     this.renderer.setClearColor(0, 0);
     this.canvas = this.renderer.domElement;
     host.append(this.canvas);
@@ -55,7 +64,18 @@ export class Stage {
   tick(now: number, seconds: number): void {
     this.fly(now);
     this.controls.update();
-    if (this.stale) this.draw(seconds);
+    if (this.stale) {
+      const still = now - this.lastDrawn > STILL_MS;
+      if (!still) this.setRatio(this.movingRatio);
+      this.draw(seconds);
+      this.lastDrawn = now;
+    } else if (this.ratio !== this.fullRatio && now - this.lastDrawn > STILL_MS) {
+      this.setRatio(this.fullRatio);
+    }
+  }
+
+  get pixelRatio(): number {
+    return this.ratio;
   }
 
   redraw(): void {
@@ -64,21 +84,30 @@ export class Stage {
 
   private draw(seconds: number): void {
     this.stale = false;
-    this.renderer.render(this.scene, this.camera);
-    this.onDrawn();
+    this.render();
     // Where pictures come slowly (software rendering), fewer pixels make it usable.
     this.slow = seconds > 0.07 ? this.slow + 1 : Math.max(0, this.slow - 1);
-    if (this.slow > 12 && this.ratio > 0.8) {
-      this.ratio = this.ratio > 1 ? 1 : 0.75;
+    if (this.slow > 8 && this.movingRatio > 0.6) {
+      this.movingRatio = this.movingRatio > 1 ? 1 : this.movingRatio - 0.2;
       this.slow = 0;
-      this.resize();
     }
   }
 
-  /** Draws now, whatever the loop does, so that the canvas can be read. */
-  drawNow(): void {
+  private render(): void {
     this.renderer.render(this.scene, this.camera);
     this.onDrawn();
+  }
+
+  /** Draws now, whatever the loop does, so that the canvas can be read; in full sharpness if `sharp`. */
+  drawNow(sharp: boolean): void {
+    if (sharp) this.setRatio(this.fullRatio);
+    this.render();
+  }
+
+  private setRatio(ratio: number): void {
+    if (ratio === this.ratio) return;
+    this.ratio = ratio;
+    this.resize();
   }
 
   private resize(): void {
@@ -93,9 +122,10 @@ export class Stage {
 
   /** Fits saved views to what there is to see. */
   setBounds(box: Box3): void {
-    box.getBoundingSphere(this.bounds);
-    this.camera.near = this.bounds.radius / 50;
-    this.camera.far = this.bounds.radius * 60;
+    this.bounds.copy(box);
+    const radius = 0.5 * box.getSize(new Vector3()).length();
+    this.camera.near = radius / 50;
+    this.camera.far = radius * 60;
     this.camera.updateProjectionMatrix();
   }
 
@@ -105,14 +135,8 @@ export class Stage {
   }
 
   lookFrom(direction: Vector3, smooth = true): void {
-    const angle = (Math.PI / 180) * (this.camera.fov / 2);
-    const fit = this.bounds.radius / Math.sin(this.camera.aspect < 1 ? Math.atan(Math.tan(angle) * this.camera.aspect) : angle);
-    const target = this.bounds.center.clone();
-    const to = direction
-      .clone()
-      .normalize()
-      .multiplyScalar(0.94 * fit)
-      .add(target);
+    const target = this.bounds.getCenter(new Vector3());
+    const to = direction.clone().normalize().multiplyScalar(this.distanceFor(direction)).add(target);
     const still = !smooth || window.matchMedia('(prefers-reduced-motion: reduce)').matches;
     if (still) {
       this.flight = null;
@@ -123,6 +147,22 @@ export class Stage {
       this.flight = { start: performance.now(), from: this.camera.position.clone(), to, target, fromTarget: this.controls.target.clone() };
     }
     this.redraw();
+  }
+
+  /** How far away the camera must be for all corners of the bounds to be in the picture, with a margin. */
+  private distanceFor(direction: Vector3): number {
+    const forward = direction.clone().normalize().negate();
+    const right = forward.clone().cross(this.camera.up).normalize();
+    const up = right.clone().cross(forward);
+    const half = this.bounds.getSize(new Vector3()).multiplyScalar(0.5);
+    const tangent = Math.tan((Math.PI / 360) * this.camera.fov);
+    let distance = 0;
+    for (let k = 0; k < 8; k++) {
+      const corner = new Vector3(k & 1 ? half.x : -half.x, k & 2 ? half.y : -half.y, k & 4 ? half.z : -half.z);
+      const sideways = Math.max(Math.abs(corner.dot(up)) / tangent, Math.abs(corner.dot(right)) / (tangent * this.camera.aspect));
+      distance = Math.max(distance, sideways - corner.dot(forward));
+    }
+    return 1.04 * distance;
   }
 
   private fly(now: number): void {
@@ -181,3 +221,13 @@ export class Stage {
 }
 
 const SCRATCH = new Vector3();
+
+/** Whether the pictures are computed without a graphics card: then edges are not smoothed, which costs the most. */
+function rendersInSoftware(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) return false;
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
+}

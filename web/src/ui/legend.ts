@@ -54,7 +54,7 @@ const NAMES = ['X right', 'Y front', 'Z up'];
 export class Triad {
   readonly element = svg('svg', {
     class: 'triad',
-    viewBox: '-50 -50 100 100',
+    viewBox: '-64 -52 128 104',
     role: 'img',
     'aria-label': 'Axes: X to the right of the mother, Y to the front, Z towards the head',
   });
@@ -67,7 +67,6 @@ export class Triad {
     return { arm, label, group };
   });
   private vector = new Vector3();
-  private depth = [0, 0, 0];
 
   constructor() {
     this.element.append(...this.arms.map((arm) => arm.group));
@@ -79,10 +78,11 @@ export class Triad {
       const v = this.vector.set(0, 0, 0).setComponent(axis, 1).transformDirection(rotation);
       arm.setAttribute('x2', (27 * v.x).toFixed(1));
       arm.setAttribute('y2', (-27 * v.y).toFixed(1));
-      label.setAttribute('x', (37 * v.x).toFixed(1));
-      label.setAttribute('y', (-40 * v.y).toFixed(1));
-      group.setAttribute('opacity', Math.hypot(v.x, v.y) < 0.25 ? '0.35' : '1');
-      this.depth[axis] = v.z;
+      label.setAttribute('x', (27 * v.x + 18 * Math.sign(Math.round(4 * v.x))).toFixed(1));
+      label.setAttribute('y', (-27 * v.y - 9 * (Math.abs(v.y) > 0.2 ? Math.sign(v.y) : 0)).toFixed(1));
+      const seen = Math.hypot(v.x, v.y) > 0.25;
+      label.style.display = seen ? '' : 'none';
+      group.setAttribute('opacity', seen ? '1' : '0.4');
     });
   }
 }

@@ -42,7 +42,11 @@ export function verdictSection(runs: Run[]): HTMLElement {
     'details',
     { class: 'verdict-tables', open, toggle: () => remember('verdict', details.open ? 'open' : 'closed') },
     h('summary', {}, 'Expected and obtained, row by row'),
-    h('div', { class: 'columns' }, ...[...groups.values()].map((group) => table(group, runs))),
+    h(
+      'div',
+      { class: 'window', tabindex: 0, 'aria-label': 'Verdict, row by row' },
+      h('div', { class: 'columns' }, ...[...groups.values()].map((group) => table(group, runs))),
+    ),
   );
   return h(
     'section',
@@ -93,7 +97,7 @@ function table(group: { title: string; key: string; rows: VerdictRow[] }, runs: 
     h('caption', {}, group.title),
     h(
       'thead',
-      {},
+      { class: runs.length > 1 ? '' : 'hidden' },
       h(
         'tr',
         {},
@@ -110,7 +114,7 @@ function table(group: { title: string; key: string; rows: VerdictRow[] }, runs: 
           'tr',
           { class: row.state },
           h('th', { scope: 'row' }, row.what),
-          h('td', {}, row.expected, h('small', {}, row.source)),
+          h('td', {}, row.expected, ' ', h('small', {}, row.source)),
           ...runs.map((run) => obtained(run, row)),
         ),
       ),
