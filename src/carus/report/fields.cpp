@@ -50,7 +50,7 @@ Fields::Fields(const FrameMesh& mesh, std::optional<std::map<std::string, materi
     for (const auto i : t) node_volume_[i] += volume_[e];
   }
   kinds_ = {{"stretch", "Largest stretch", "", 1, 0.01, 1, 3},
-            {"contact_pressure", "Contact pressure", "kPa", 0, 0.25, 0, 60}};
+            {"contact_pressure", "Contact pressure", "kPa", 0, 0.5, 0, 60}};
   if (!materials) return;
   std::vector<float> bulk(mesh.regions.size());
   for (std::size_t r = 0; r < bulk.size(); ++r) {
@@ -60,7 +60,7 @@ Fields::Fields(const FrameMesh& mesh, std::optional<std::map<std::string, materi
     bulk[r] = float(m->second.bulk_modulus());
   }
   for (const auto r : mesh.region) bulk_.push_back(bulk[r]);
-  kinds_.push_back({"pressure", "Pressure in the tissue", "kPa", 0, 0.25, -40, 40});
+  kinds_.push_back({"pressure", "Pressure in the tissue", "kPa", 0, 0.5, -40, 40});
 }
 
 std::vector<float> Fields::values(std::size_t k, const FrameState& state) const {

@@ -108,8 +108,10 @@ Json provenance(const Json& summary, const Run& r) {
   add_members(list, summary, "numerics");
   if (r.packer && !r.packer->empty()) {
     const auto q = mesh_quality(r.packer->mesh());
-    add("nodes", fmt::format("{}", r.packer->mesh().rest.size()));
-    add("tetrahedra", fmt::format("{}", r.packer->mesh().tets.size()));
+    if (!summary.contains("numerics")) {
+      add("elements", fmt::format("{}", r.packer->mesh().tets.size()));
+      add("nodes", fmt::format("{}", r.packer->mesh().rest.size()));
+    }
     add("least dihedral angle at rest", fmt::format("{:.1f} deg; 1 % of elements below {:.1f} deg", q.least_angle, q.low_angle));
     add("mean edge at rest", fmt::format("{:.2f} mm", 1e3 * q.mean_edge));
   }

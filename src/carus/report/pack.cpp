@@ -150,7 +150,8 @@ Chunk FramePacker::make_chunk(std::span<const FrameEntry> entries, std::vector<s
       notes.push_back(fmt::format("Frame at {:.1f} s left out: {}", entry.time, e.what()));
     }
   }
-  chunk.position = pack_frames(positions, rest_quantised_, 1, options_.level);
+  // Motion is smooth and packs better about a line; fields flicker and do not.
+  chunk.position = pack_frames(positions, rest_quantised_, 2, options_.level);
   for (std::size_t k = 0; k < kinds.size(); ++k) chunk.fields[k].data = pack_frames(values[k], {}, 1, options_.level);
   return chunk;
 }
