@@ -15,7 +15,7 @@ export function numberText(value: number | null | undefined): string {
   let text = size !== 0 && size < 1e-4 ? value.toExponential(1) : value.toFixed(digits);
   if (text.includes('.') && !text.includes('e')) text = text.replace(/\.?0+$/, '');
   if (text === '-0') text = '0';
-  return text.replace('-', '−');
+  return text.replace(/-/g, '−');
 }
 
 export const withUnit = (text: string, unit: string): string => (unit ? `${text} ${unit}` : text);
