@@ -38,15 +38,17 @@ int export_trajectory(const TrajectoryArguments& a) {
   if (folder.scenario) contractions = folder.scenario->loads.contractions;
   const auto t = report::resample(motion, contractions, options_of(a));
   for (const auto& note : notes) fmt::print(stderr, "note: {}\n", note);
-  const std::filesystem::path out = a.out.empty() ? std::filesystem::path(a.folder) / "trajectory" : std::filesystem::path(a.out);
+  const std::filesystem::path out =
+      a.out.empty() ? std::filesystem::path(a.folder) / "trajectory" : std::filesystem::path(a.out);
   const auto csv = out.string() + ".csv", json = out.string() + ".json";
   results::write_atomically(csv, report::as_csv(t));
   results::write_atomically(json, report::as_json(t, folder));
-  fmt::print("{}, {}: {} rows of {} columns at {:g} Hz, time stretched by {:.6g}\n", csv, json, t.rows.size(), t.columns.size(),
-             t.options.rate, t.time_stretch);
-  fmt::print("along {}: stroke {:.2f} mm, speed up to {:.4g} mm/s at {:.1f} s, acceleration up to {:.4g} mm/s2 at {:.1f} s\n",
-             report::name_of(t.options.axis), t.stroke_high - t.stroke_low, t.speed.value, t.speed.time, t.acceleration.value,
-             t.acceleration.time);
+  fmt::print("{}, {}: {} rows of {} columns at {:g} Hz, time stretched by {:.6g}\n", csv, json, t.rows.size(),
+             t.columns.size(), t.options.rate, t.time_stretch);
+  fmt::print(
+      "along {}: stroke {:.2f} mm, speed up to {:.4g} mm/s at {:.1f} s, acceleration up to {:.4g} mm/s2 at {:.1f} s\n",
+      report::name_of(t.options.axis), t.stroke_high - t.stroke_low, t.speed.value, t.speed.time, t.acceleration.value,
+      t.acceleration.time);
   return done;
 }
 
@@ -66,7 +68,8 @@ void add_export(CLI::App& app, int& status) {
   t->add_option("--max-speed", a->speed, "Along the axis [mm/s]")->check(CLI::PositiveNumber);
   t->add_option("--max-acceleration", a->acceleration, "Along the axis [mm/s2]")->check(CLI::PositiveNumber);
   t->add_option("--stroke", a->stroke, "Of the axis [mm]")->check(CLI::PositiveNumber);
-  t->add_flag("--slow-down", a->slow_down, "Stretch time, all of it by one factor, until speed and acceleration are within their limits");
+  t->add_flag("--slow-down", a->slow_down,
+              "Stretch time, all of it by one factor, until speed and acceleration are within their limits");
   t->add_flag("--to-end", a->to_end, "Past birth, to the run's end");
   t->add_flag("--no-wrench", a->no_wrench, "Without forces: frames are not read");
   t->footer(

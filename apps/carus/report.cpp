@@ -84,12 +84,14 @@ void write_report(ReportArguments a) {
   std::vector<std::string> blobs;
   for (const auto& blob : manifest.blobs) blobs.push_back(blob.bytes);
   const auto page = report::page(viewer, manifest.json, blobs);
-  const fs::path out = !a.out.empty() ? fs::path(a.out) : fs::path(a.folders[0]) / (own == 1 ? "report.html" : "comparison.html");
+  const fs::path out =
+      !a.out.empty() ? fs::path(a.out) : fs::path(a.folders[0]) / (own == 1 ? "report.html" : "comparison.html");
   results::write_atomically(out, page);
   fmt::print("{}: {:.1f} MB, {:.1f} s\n", out.string(), double(page.size()) / 1e6,
              std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
   if (double(page.size()) > comfortable)
-    fmt::print(stderr, "note: more than 25 MB is slow to open; carus serve {} shows the same piece by piece\n", a.folders[0]);
+    fmt::print(stderr, "note: more than 25 MB is slow to open; carus serve {} shows the same piece by piece\n",
+               a.folders[0]);
   for (std::size_t i = 0; i < own; ++i) fmt::print("{}: {}\n", a.folders[i], runs[i].verdict.line);
 }
 
@@ -106,7 +108,8 @@ std::string viewer_page(const std::string& file) {
   if (!file.empty()) return results::read_text(file);
   if (report::built_in_viewer().empty())
     throw InputError(
-        "this carus was built without the viewer (web/dist/viewer.html was missing); build it with ./dev build, or name one with --viewer");
+        "this carus was built without the viewer (web/dist/viewer.html was missing); build it with ./dev build, or "
+        "name one with --viewer");
   return std::string(report::built_in_viewer());
 }
 
@@ -116,7 +119,8 @@ void add_report(CLI::App& app, int& status) {
   c->add_option("DIR", a->folders, "Results folders of carus run; the first is the one shown")->required();
   c->add_option("--out", a->out, "The page to write; default DIR/report.html, of several runs DIR/comparison.html");
   c->add_option("--ghost", a->ghost, "A run that is drawn as a ghost over the first one");
-  c->add_flag("--check", a->check, "Print each parameter that a run is judged by, the verdict last; exit status 1 if it is not met");
+  c->add_flag("--check", a->check,
+              "Print each parameter that a run is judged by, the verdict last; exit status 1 if it is not met");
   c->add_option("--viewer", a->viewer, "Another viewer.html than the built-in one")->check(CLI::ExistingFile);
   c->footer(
       "Examples:\n"

@@ -18,7 +18,8 @@ using namespace carus::test;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Where the viewer is not built, a page that only has the place for the data: what is tested is what the program puts there.
+/// Where the viewer is not built, a page that only has the place for the data: what is tested is what the program puts
+/// there.
 std::vector<std::string> with_viewer(std::vector<std::string> arguments) {
   const fs::path viewer = fs::temp_directory_path() / ("carus_viewer_" + std::to_string(getpid()) + ".html");
   std::ofstream(viewer) << "<!doctype html><title>x</title><!--CARUS-DATA-->\n";
@@ -54,7 +55,8 @@ void writes_one_page() {
   EXPECT_GT(r.at("mesh").at("tets").get<int>(), 15000);
   EXPECT_GE(r.at("frames").at("times_s").size(), 15u);
   EXPECT_EQ(r.at("plots").size(), 20u);
-  for (std::size_t i = 0; i < j.at("blobs").size(); ++i) EXPECT_THAT(html, HasSubstr("carus-blob-" + std::to_string(i) + "\""));
+  for (std::size_t i = 0; i < j.at("blobs").size(); ++i)
+    EXPECT_THAT(html, HasSubstr("carus-blob-" + std::to_string(i) + "\""));
   // Its scale: a 200-frame birth must stay below 25 MB (about 0.1 MB a frame on this mesh).
   EXPECT_LT(html.size(), 4e6);
   EXPECT_FALSE(fs::exists(run() / "report.html.tmp"));
@@ -74,7 +76,11 @@ void writes_one_page() {
 void puts_runs_side_by_side() {
   const fs::path log = run().string() + ".report.log", copy = fresh("reported_copy"), out = fresh("both.html");
   fs::copy(run(), copy, fs::copy_options::recursive);
-  ASSERT_EQ(wait_for(start(with_viewer({"report", run().string(), copy.string(), "--ghost", copy.string(), "--out", out.string()}), log)), 0) << text(log);
+  ASSERT_EQ(wait_for(start(
+                with_viewer({"report", run().string(), copy.string(), "--ghost", copy.string(), "--out", out.string()}),
+                log)),
+            0)
+      << text(log);
   const auto j = manifest_in(text(out));
   ASSERT_EQ(j.at("runs").size(), 2u);
   EXPECT_EQ(j.at("ghost"), 1);
@@ -94,7 +100,8 @@ void refuses_bad_folders() {
   const fs::path log = run().string() + ".bad.log", foreign = fresh("foreign");
   fs::create_directories(foreign);
   for (const auto& bad : {fs::path("/nowhere/run"), foreign}) {
-    EXPECT_EQ(wait_for(start(with_viewer({"report", bad.string(), "--out", (foreign / "report.html").string()}), log)), 2);
+    EXPECT_EQ(wait_for(start(with_viewer({"report", bad.string(), "--out", (foreign / "report.html").string()}), log)),
+              2);
     EXPECT_THAT(text(log), HasSubstr(bad.string()));
     EXPECT_EQ(wait_for(start({"report", bad.string(), "--check"}, log)), 2);
     EXPECT_EQ(wait_for(start({"export", "trajectory", bad.string()}, log)), 2);
@@ -107,16 +114,22 @@ void refuses_bad_folders() {
 
 void writes_a_trajectory_or_says_why_not() {
   const fs::path log = run().string() + ".export.log", out = fresh("trajectory");
-  ASSERT_EQ(wait_for(start({"export", "trajectory", run().string(), "--out", out.string(), "--rate", "5"}, log)), 0) << text(log);
+  ASSERT_EQ(wait_for(start({"export", "trajectory", run().string(), "--out", out.string(), "--rate", "5"}, log)), 0)
+      << text(log);
   const auto j = nlohmann::json::parse(text(out.string() + ".json"));
   EXPECT_EQ(j.at("rows").size(), 451u);
   EXPECT_FALSE(j.at("frame").at("head_centre_at_start_mm").is_null());
   EXPECT_LT(j.at("rows").at(450).at(4).get<double>(), -20) << "the head has gone down";
   const fs::path refused = fresh("refused");
-  EXPECT_EQ(wait_for(start({"export", "trajectory", run().string(), "--out", refused.string(), "--max-speed", "0.01"}, log)), 2);
+  EXPECT_EQ(
+      wait_for(start({"export", "trajectory", run().string(), "--out", refused.string(), "--max-speed", "0.01"}, log)),
+      2);
   EXPECT_THAT(text(log), HasSubstr("mm/s at "));
   EXPECT_FALSE(fs::exists(refused.string() + ".csv"));
-  EXPECT_EQ(wait_for(start({"export", "trajectory", run().string(), "--out", refused.string(), "--max-speed", "0.1", "--slow-down"}, log)), 0);
+  EXPECT_EQ(wait_for(start({"export", "trajectory", run().string(), "--out", refused.string(), "--max-speed", "0.1",
+                            "--slow-down"},
+                           log)),
+            0);
   EXPECT_GT(nlohmann::json::parse(text(refused.string() + ".json")).at("time_stretch").get<double>(), 2);
 }
 

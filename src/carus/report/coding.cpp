@@ -45,8 +45,8 @@ std::vector<std::int32_t> from_planes(std::span<const std::uint8_t> bytes, int p
 std::string deflate(std::span<const std::uint8_t> raw, int level) {
   uLongf size = compressBound(uLong(raw.size()));
   std::string out(size, '\0');
-  const int status =
-      compress2(reinterpret_cast<Bytef*>(out.data()), &size, raw.empty() ? reinterpret_cast<const Bytef*>("") : raw.data(), uLong(raw.size()), level);
+  const int status = compress2(reinterpret_cast<Bytef*>(out.data()), &size,
+                               raw.empty() ? reinterpret_cast<const Bytef*>("") : raw.data(), uLong(raw.size()), level);
   CARUS_ASSERT(status == Z_OK);  // the buffer is as large as zlib asks for
   out.resize(size);
   return out;
@@ -55,10 +55,10 @@ std::string deflate(std::span<const std::uint8_t> raw, int level) {
 std::vector<std::uint8_t> inflate(std::string_view packed, std::size_t size) {
   std::vector<std::uint8_t> out(size + 1);  // one more: a longer stream must not pass for a whole one
   uLongf got = uLongf(out.size());
-  const int status =
-      uncompress(out.data(), &got, reinterpret_cast<const Bytef*>(packed.data()), uLong(packed.size()));
+  const int status = uncompress(out.data(), &got, reinterpret_cast<const Bytef*>(packed.data()), uLong(packed.size()));
   if (status != Z_OK || got != size)
-    throw InputError(fmt::format("a zlib stream of {} bytes is damaged, or does not hold {} bytes", packed.size(), size));
+    throw InputError(
+        fmt::format("a zlib stream of {} bytes is damaged, or does not hold {} bytes", packed.size(), size));
   out.resize(size);
   return out;
 }
@@ -79,7 +79,8 @@ std::string base64(std::string_view bytes) {
 std::int32_t Quantiser::operator()(double x) const {
   const double q = std::nearbyint(x / quantum_);
   if (!(std::abs(q) < double(1 << 29)))
-    throw InputError(fmt::format("{}: the value {:g} is not finite, or too large for steps of {:g}", what_, x, quantum_));
+    throw InputError(
+        fmt::format("{}: the value {:g} is not finite, or too large for steps of {:g}", what_, x, quantum_));
   return std::int32_t(q);
 }
 

@@ -9,8 +9,8 @@
 
 namespace carus::report {
 
-/// Integers as bytes that deflate packs well: zigzag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...), then the lowest bytes of
-/// all values, then the second of all, as many planes as the largest value needs (1 to 4).
+/// Integers as bytes that deflate packs well: zigzag (0, -1, 1, -2, ... become 0, 1, 2, 3, ...), then the lowest bytes
+/// of all values, then the second of all, as many planes as the largest value needs (1 to 4).
 struct Planes {
   int planes = 1;
   std::vector<std::uint8_t> bytes;  ///< planes x number of values

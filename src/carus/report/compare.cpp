@@ -16,7 +16,8 @@ std::vector<ComparisonRow> compare(const std::vector<const Folder*>& runs) {
   };
   const auto last = [](const std::vector<double>& v) { return v.empty() ? std::optional<double>() : v.back(); };
   const std::vector<Figure> figures = {
-      {"time of birth", "min", [](const Figures& f) { return f.birth_time ? std::optional(*f.birth_time / 60) : std::nullopt; }},
+      {"time of birth", "min",
+       [](const Figures& f) { return f.birth_time ? std::optional(*f.birth_time / 60) : std::nullopt; }},
       {"contractions", "", [](const Figures& f) { return f.contractions; }},
       {"head displacement X", "mm", [](const Figures& f) { return f.amplitude[0]; }},
       {"head displacement Y", "mm", [](const Figures& f) { return f.amplitude[1]; }},

@@ -88,7 +88,8 @@ MonotoneCubic::Extreme MonotoneCubic::steepest() const {
     double at[3] = {0, 1, 0};
     if (c0 * c1 < 0) at[2] = c0 / (c0 - c1);
     for (const double s : at) {
-      if (const double v = slope_in(i, s); std::abs(v) > std::abs(best.value)) best = {t_[i] + s * (t_[i + 1] - t_[i]), v};
+      if (const double v = slope_in(i, s); std::abs(v) > std::abs(best.value))
+        best = {t_[i] + s * (t_[i + 1] - t_[i]), v};
     }
   }
   return best;

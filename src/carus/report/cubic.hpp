@@ -5,8 +5,8 @@
 
 namespace carus::report {
 
-/// A curve through points, cubic between them, with a continuous slope; monotone wherever the points are, so it never leaves the
-/// range of the two points that it is between: no overshoot.
+/// A curve through points, cubic between them, with a continuous slope; monotone wherever the points are, so it never
+/// leaves the range of the two points that it is between: no overshoot.
 ///
 ///     slope at a point: harmonic mean of the secants d on its two sides, weighted by the intervals h,
 ///         (w1 + w2)/(w1/d1 + w2/d2),  w1 = 2 h2 + h1,  w2 = h2 + 2 h1;  0 where the secants differ in sign

@@ -45,8 +45,8 @@ Fields::Fields(const FrameMesh& mesh, std::optional<std::map<std::string, materi
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
     const auto& t = mesh.tets[e];
     const Vec3 a = vec(mesh.rest[t[0]]);
-    volume_[e] = float(
-        std::abs((vec(mesh.rest[t[1]]) - a).cross(vec(mesh.rest[t[2]]) - a).dot(vec(mesh.rest[t[3]]) - a)) / 6);
+    volume_[e] =
+        float(std::abs((vec(mesh.rest[t[1]]) - a).cross(vec(mesh.rest[t[2]]) - a).dot(vec(mesh.rest[t[3]]) - a)) / 6);
     for (const auto i : t) node_volume_[i] += volume_[e];
   }
   kinds_ = {{"stretch", "Largest stretch", "", 1, 0.01, 1, 3},

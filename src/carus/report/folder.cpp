@@ -34,7 +34,8 @@ void require_results_folder(const fs::path& path) {
     throw InputError(
         fmt::format("{}: no such folder; give the one that carus run SCENARIO --out DIR wrote", path.string()));
   if (!fs::is_directory(path))
-    throw InputError(fmt::format("{}: is no folder; give the one that carus run SCENARIO --out DIR wrote", path.string()));
+    throw InputError(
+        fmt::format("{}: is no folder; give the one that carus run SCENARIO --out DIR wrote", path.string()));
   if (fs::is_regular_file(path / "curves.csv")) return;
   if (fs::is_regular_file(path / "scenario.resolved.yaml") || fs::is_regular_file(path / "log.txt"))
     throw InputError(
@@ -74,8 +75,8 @@ void read_scenario(Folder& f) {
     f.scenario = scenario::parse(f.scenario_yaml, file);
   } catch (const std::exception& e) {
     const std::string what = e.what();
-    f.notes.push_back(fmt::format("{}: not a scenario of this version of carus: {}", file.string(),
-                                  what.substr(0, what.find('\n'))));
+    f.notes.push_back(
+        fmt::format("{}: not a scenario of this version of carus: {}", file.string(), what.substr(0, what.find('\n'))));
   }
 }
 

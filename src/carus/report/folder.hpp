@@ -14,8 +14,8 @@ namespace carus::report {
 enum class RunStatus { finished, failed, in_progress };
 const char* name_of(RunStatus status);  ///< "finished", "failed", "in_progress"
 
-/// A results folder, but for its frames. What is missing or damaged is named in `notes`; what no report can do without is an
-/// error.
+/// A results folder, but for its frames. What is missing or damaged is named in `notes`; what no report can do without
+/// is an error.
 struct Folder {
   std::filesystem::path path;
   RunStatus status = RunStatus::in_progress;

@@ -43,7 +43,8 @@ class VtuFile {
     on_error->SetClientData(&broken);
     on_error->SetCallback([](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
     vtkNew<vtkXMLUnstructuredGridReader> reader;
-    for (const unsigned long event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent}) reader->AddObserver(event, on_error);
+    for (const unsigned long event : {vtkCommand::ErrorEvent, vtkCommand::WarningEvent})
+      reader->AddObserver(event, on_error);
     reader->SetReaderErrorObserver(on_error);
     reader->SetParserErrorObserver(on_error);
     if (!reader->CanReadFile(file_.c_str())) refuse("is no VTU file of an unstructured grid");
@@ -56,7 +57,8 @@ class VtuFile {
     grid_ = reader->GetOutput();
     if (broken || grid_ == nullptr || reader->GetErrorCode() != 0) refuse("is damaged");
     if (grid_->GetPoints() == nullptr || grid_->GetNumberOfPoints() == 0) refuse("has no points");
-    if (vtkFloatArray::SafeDownCast(grid_->GetPoints()->GetData()) == nullptr) refuse("has points that are not Float32");
+    if (vtkFloatArray::SafeDownCast(grid_->GetPoints()->GetData()) == nullptr)
+      refuse("has points that are not Float32");
   }
 
   [[nodiscard]] std::size_t nodes() const { return std::size_t(grid_->GetNumberOfPoints()); }
@@ -99,7 +101,8 @@ class VtuFile {
       vtkIdType count = 0;
       const vtkIdType* points = nullptr;
       grid_->GetCellPoints(vtkIdType(e), count, points);
-      if (grid_->GetCellType(vtkIdType(e)) != VTK_TETRA || count != 4) refuse(fmt::format("cell {} is no tetrahedron", e));
+      if (grid_->GetCellType(vtkIdType(e)) != VTK_TETRA || count != 4)
+        refuse(fmt::format("cell {} is no tetrahedron", e));
       for (std::size_t k = 0; k < 4; ++k) {
         if (points[k] < 0 || std::size_t(points[k]) >= nodes())
           refuse(fmt::format("cell {} has the corner {}; allowed 0 to {}", e, points[k], nodes() - 1));
@@ -187,8 +190,8 @@ FrameMesh read_frame_mesh(const fs::path& file) {
 FrameState read_frame_state(const fs::path& file, std::size_t nodes, std::size_t tets) {
   const VtuFile vtu(file, {"contact_force"}, {"J", "max_stretch"});
   if (vtu.nodes() != nodes || vtu.cells() != tets)
-    vtu.refuse(fmt::format("has {} nodes and {} cells, the frames before {} and {}: the folder holds two runs", vtu.nodes(),
-                           vtu.cells(), nodes, tets));
+    vtu.refuse(fmt::format("has {} nodes and {} cells, the frames before {} and {}: the folder holds two runs",
+                           vtu.nodes(), vtu.cells(), nodes, tets));
   return {vtu.positions(), vtu.node_vectors("contact_force"), vtu.cell_scalars("J"), vtu.cell_scalars("max_stretch")};
 }
 

@@ -24,8 +24,8 @@ struct FrameState {
   std::vector<float> volume_ratio, stretch;         ///< J and largest principal stretch per tet
 };
 
-/// Read a frames/frame_NNNN.vtu. Both throw InputError (file, what is wrong, what to do) for a file that is missing, cut
-/// off, damaged, not carus's, or, for the state, of another mesh. Thread-safe for different files.
+/// Read a frames/frame_NNNN.vtu. Both throw InputError (file, what is wrong, what to do) for a file that is missing,
+/// cut off, damaged, not carus's, or, for the state, of another mesh. Thread-safe for different files.
 FrameMesh read_frame_mesh(const std::filesystem::path& file);
 FrameState read_frame_state(const std::filesystem::path& file, std::size_t nodes, std::size_t tets);
 
@@ -34,7 +34,8 @@ struct FrameEntry {
   double time;  ///< [s of labour]
   std::filesystem::path file;
 };
-/// Throws InputError if the file cannot be read, is no collection, times do not increase, or a name leads out of the folder.
+/// Throws InputError if the file cannot be read, is no collection, times do not increase, or a name leads out of the
+/// folder.
 std::vector<FrameEntry> read_frame_index(const std::filesystem::path& pvd);
 
 }  // namespace carus::report

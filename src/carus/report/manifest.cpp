@@ -68,7 +68,9 @@ Json verdict_json(const Verdict& v) {
                     {"expected", r.expected},
                     {"source", r.source},
                     {"obtained", r.obtained},
-                    {"state", !r.asked ? "not_asked" : r.inside ? "inside" : "outside"}});
+                    {"state", !r.asked   ? "not_asked"
+                              : r.inside ? "inside"
+                                         : "outside"}});
   }
   return {{"met", v.met},         {"line", v.line},           {"inside", v.inside},
           {"outside", v.outside}, {"not_asked", v.not_asked}, {"rows", std::move(rows)}};
@@ -90,7 +92,8 @@ std::string spaced(std::string key) {
 void add_members(Json& list, const Json& summary, const char* key, const std::string& prefix = "") {
   const auto it = summary.find(key);
   if (it == summary.end() || !it->is_object()) return;
-  for (const auto& [name, value] : it->items()) list.push_back({{"what", prefix + spaced(name)}, {"value", as_words(value)}});
+  for (const auto& [name, value] : it->items())
+    list.push_back({{"what", prefix + spaced(name)}, {"value", as_words(value)}});
 }
 
 Json provenance(const Json& summary, const Run& r) {
@@ -112,7 +115,8 @@ Json provenance(const Json& summary, const Run& r) {
       add("elements", fmt::format("{}", r.packer->mesh().tets.size()));
       add("nodes", fmt::format("{}", r.packer->mesh().rest.size()));
     }
-    add("least dihedral angle at rest", fmt::format("{:.1f} deg; 1 % of elements below {:.1f} deg", q.least_angle, q.low_angle));
+    add("least dihedral angle at rest",
+        fmt::format("{:.1f} deg; 1 % of elements below {:.1f} deg", q.least_angle, q.low_angle));
     add("mean edge at rest", fmt::format("{:.2f} mm", 1e3 * q.mean_edge));
   }
   add_members(list, summary, "wall_s", "wall time, s: ");
@@ -137,7 +141,10 @@ Json contractions(const Folder& f) {
   if (!f.scenario) return list;
   const auto& c = f.scenario->loads.contractions;
   for (const double s : results::contraction_starts(c, f.curves.rows.back()[0])) {
-    list.push_back({{"start_s", s}, {"plateau_s", s + c.rise}, {"plateau_end_s", s + c.duration - c.fall}, {"end_s", s + c.duration}});
+    list.push_back({{"start_s", s},
+                    {"plateau_s", s + c.rise},
+                    {"plateau_end_s", s + c.duration - c.fall},
+                    {"end_s", s + c.duration}});
   }
   return list;
 }
@@ -151,7 +158,11 @@ Json plots_json(const std::vector<Plot>& plots) {
       if (m.low && m.high && *m.low == *m.high) {
         marks.push_back({{"kind", "value"}, {"value", number(m.low)}, {"label", m.label}, {"source", m.source}});
       } else {
-        marks.push_back({{"kind", "band"}, {"low", number(m.low)}, {"high", number(m.high)}, {"label", m.label}, {"source", m.source}});
+        marks.push_back({{"kind", "band"},
+                         {"low", number(m.low)},
+                         {"high", number(m.high)},
+                         {"label", m.label},
+                         {"source", m.source}});
       }
     }
     for (const auto& r : p.references) {
@@ -194,13 +205,18 @@ Json Writer::mesh(const FramePacker& p, const std::string& file) {
     if (tet == m.region.end()) continue;
     const auto& name = m.regions[r];
     const auto& organ = m.organs[m.organ[std::size_t(tet - m.region.begin())]];
-    const bool bone = name.starts_with("innominate") || name == "sacrum" || name == "coccyx" || name.find("bone") != std::string::npos;
+    const bool bone = name.starts_with("innominate") || name == "sacrum" || name == "coccyx" ||
+                      name.find("bone") != std::string::npos;
     const bool soft = name == "levator_ani" || name == "perineal_body" || organ == "abdomen";
     regions.push_back({{"id", r},
                        {"name", name},
                        {"label", spaced(name)},
                        {"organ", organ},
-                       {"kind", bone ? "bone" : soft ? "soft" : organ == "fetus" ? "fetus" : organ == "uterus" ? "uterus" : "soft"}});
+                       {"kind", bone                ? "bone"
+                                : soft              ? "soft"
+                                : organ == "fetus"  ? "fetus"
+                                : organ == "uterus" ? "uterus"
+                                                    : "soft"}});
   }
   Json landmarks = Json::array();
   try {
@@ -209,16 +225,19 @@ Json Writer::mesh(const FramePacker& p, const std::string& file) {
   } catch (const InputError&) {
     // A mesh without a skull has no head to follow.
   }
-  return {{"nodes", m.rest.size()},      {"tets", m.tets.size()},
-          {"regions", std::move(regions)}, {"corners", add(p.corners())},
-          {"region", add(p.region())},     {"rest", add(p.rest())},
+  return {{"nodes", m.rest.size()},           {"tets", m.tets.size()},     {"regions", std::move(regions)},
+          {"corners", add(p.corners())},      {"region", add(p.region())}, {"rest", add(p.rest())},
           {"landmarks", std::move(landmarks)}};
 }
 
 Json Writer::frames(const FramePacker& p) {
   Json times = Json::array(), position = Json::array(), fields = Json::array();
   const auto chunk_json = [&](std::size_t first, std::size_t count, const Packed& packed) -> Json {
-    return {{"first", first}, {"count", count}, {"blob", add(packed.bytes, packed.raw)}, {"planes", packed.planes}, {"order", packed.order}};
+    return {{"first", first},
+            {"count", count},
+            {"blob", add(packed.bytes, packed.raw)},
+            {"planes", packed.planes},
+            {"order", packed.order}};
   };
   fields.push_back({{"name", "displacement"},
                     {"label", "Total displacement"},
@@ -240,7 +259,8 @@ Json Writer::frames(const FramePacker& p) {
                       {"chunks", Json::array()}});
   }
   std::size_t first = 0;
-  std::vector<float> low(p.kinds().size(), std::numeric_limits<float>::infinity()), high(p.kinds().size(), -low.front());
+  std::vector<float> low(p.kinds().size(), std::numeric_limits<float>::infinity()),
+      high(p.kinds().size(), -low.front());
   for (const auto& c : p.chunks()) {
     if (c.times.empty()) continue;  // all of its frames are unreadable
     for (const double t : c.times) times.push_back(t);
@@ -298,7 +318,8 @@ std::vector<std::string> names_of(const std::vector<Run>& runs) {
   for (const auto& r : runs) ++count[r.folder.name()];
   std::vector<std::string> names;
   for (const auto& r : runs)
-    names.push_back(count[r.folder.name()] == 1 ? r.folder.name() : fmt::format("{} ({})", r.folder.name(), r.folder.path.string()));
+    names.push_back(count[r.folder.name()] == 1 ? r.folder.name()
+                                                : fmt::format("{} ({})", r.folder.name(), r.folder.path.string()));
   return names;
 }
 
@@ -358,8 +379,8 @@ Manifest manifest_of(const std::vector<Run>& runs, const ManifestOptions& option
   j["ghost"] = options.ghost < 0 ? Json(nullptr) : Json(options.ghost);
   j["comparison"] = comparison(runs);
   j["blobs"] = writer.blobs();
-  const bool growing = std::any_of(runs.begin(), runs.end(),
-                                   [](const Run& r) { return r.folder.status == RunStatus::in_progress; });
+  const bool growing =
+      std::any_of(runs.begin(), runs.end(), [](const Run& r) { return r.folder.status == RunStatus::in_progress; });
   j["live"] = growing && !options.live_url.empty() ? Json{{"src", options.live_url}, {"every_s", 5}} : Json(nullptr);
   return {j.dump(-1, ' ', false, Json::error_handler_t::replace), writer.take_blobs()};
 }

@@ -21,8 +21,8 @@ struct Run {
   Verdict verdict;
   std::shared_ptr<FramePacker> packer;
 };
-/// Reads a folder and its frames; throws InputError as read_folder does. Frames that are missing or damaged become notes.
-/// With the packer of an earlier reading only frames that are new are read.
+/// Reads a folder and its frames; throws InputError as read_folder does. Frames that are missing or damaged become
+/// notes. With the packer of an earlier reading only frames that are new are read.
 Run read_run(const std::filesystem::path& folder, const PackOptions& options = {},
              std::shared_ptr<FramePacker> packer = {});
 

@@ -10,7 +10,8 @@
 namespace carus::report {
 namespace {
 
-/// Angle between the planes of facets (a, b, c) and (a, b, d), inside the tet: between the parts of ac and ad across ab.
+/// Angle between the planes of facets (a, b, c) and (a, b, d), inside the tet: between the parts of ac and ad across
+/// ab.
 double dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 e = (b - a).normalized();
   const Vec3 u = (c - a) - e.dot(c - a) * e, v = (d - a) - e.dot(d - a) * e;
@@ -20,7 +21,8 @@ double dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }  // namespace
 
 MeshQuality mesh_quality(const FrameMesh& mesh) {
-  constexpr std::size_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
+  constexpr std::size_t edges[6][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 3, 1, 2},
+                                       {1, 2, 0, 3}, {1, 3, 0, 2}, {2, 3, 0, 1}};
   MeshQuality q;
   if (mesh.tets.empty()) return q;
   std::vector<double> least;

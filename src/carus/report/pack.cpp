@@ -21,8 +21,8 @@ std::vector<std::int32_t> quantised(const std::vector<std::array<float, 3>>& x, 
 }
 
 /// What the k-th frame is relative to at value i.
-std::int32_t predicted(const std::vector<std::vector<std::int32_t>>& frames, const std::vector<std::int32_t>& base, int order,
-                       std::size_t k, std::size_t i) {
+std::int32_t predicted(const std::vector<std::vector<std::int32_t>>& frames, const std::vector<std::int32_t>& base,
+                       int order, std::size_t k, std::size_t i) {
   if (k == 0) return base.empty() ? 0 : base[i];
   if (order == 2 && k >= 2) return 2 * frames[k - 1][i] - frames[k - 2][i];
   return frames[k - 1][i];
@@ -51,8 +51,8 @@ Packed pack(std::span<const std::int32_t> values, int level) {
   return {planes.planes, 1, planes.bytes.size(), deflate(planes.bytes, level)};
 }
 
-Packed pack_frames(const std::vector<std::vector<std::int32_t>>& frames, const std::vector<std::int32_t>& base, int order,
-                   int level) {
+Packed pack_frames(const std::vector<std::vector<std::int32_t>>& frames, const std::vector<std::int32_t>& base,
+                   int order, int level) {
   std::vector<std::int32_t> d;
   if (!frames.empty()) d.reserve(frames.size() * frames[0].size());
   for (std::size_t k = 0; k < frames.size(); ++k) {
@@ -70,7 +70,8 @@ std::vector<std::vector<std::int32_t>> unpack_frames(const Packed& packed, std::
   std::vector<std::vector<std::int32_t>> frames;
   for (std::size_t k = 0; k < count; ++k) {
     frames.emplace_back(values);
-    for (std::size_t i = 0; i < values; ++i) frames[k][i] = predicted(frames, base, packed.order, k, i) + d[k * values + i];
+    for (std::size_t i = 0; i < values; ++i)
+      frames[k][i] = predicted(frames, base, packed.order, k, i) + d[k * values + i];
   }
   return frames;
 }
@@ -98,8 +99,10 @@ void FramePacker::find_mesh(const std::vector<FrameEntry>& entries) {
 void FramePacker::update() {
   const auto entries = read_frame_index(pvd_);
   const auto same = [](const FrameEntry& a, const FrameEntry& b) { return a.time == b.time && a.file == b.file; };
-  const bool goes_on = entries.size() >= known_.size() && std::equal(known_.begin(), known_.end(), entries.begin(), same);
-  if (!goes_on) mesh_.reset(), fields_.reset(), chunks_.clear(), chunk_notes_.clear();  // the folder holds another run now
+  const bool goes_on =
+      entries.size() >= known_.size() && std::equal(known_.begin(), known_.end(), entries.begin(), same);
+  if (!goes_on)
+    mesh_.reset(), fields_.reset(), chunks_.clear(), chunk_notes_.clear();  // the folder holds another run now
   known_ = entries;
   if (!mesh_) find_mesh(entries);
 
@@ -111,7 +114,8 @@ void FramePacker::update() {
     for (std::size_t c = whole + begin; c < whole + end; ++c) {
       chunk_notes_[c].clear();
       const auto first = c * size;
-      chunks_[c] = make_chunk(std::span(entries).subspan(first, std::min(size, entries.size() - first)), chunk_notes_[c]);
+      chunks_[c] =
+          make_chunk(std::span(entries).subspan(first, std::min(size, entries.size() - first)), chunk_notes_[c]);
     }
   });
   notes_.clear();

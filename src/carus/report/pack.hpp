@@ -23,8 +23,8 @@ Packed pack(std::span<const std::int32_t> values, int level);
 
 /// Frames coded one after the other: `frames` are the quantised values of each, `base` what the first is relative to
 /// (empty: zeros). Order 1: differences to the frame before; 2: to the line through the two before.
-Packed pack_frames(const std::vector<std::vector<std::int32_t>>& frames, const std::vector<std::int32_t>& base, int order,
-                   int level);
+Packed pack_frames(const std::vector<std::vector<std::int32_t>>& frames, const std::vector<std::int32_t>& base,
+                   int order, int level);
 /// The inverse.
 std::vector<std::vector<std::int32_t>> unpack_frames(const Packed& packed, std::size_t frames,
                                                      const std::vector<std::int32_t>& base, std::size_t values);
@@ -35,8 +35,8 @@ struct PackedField {
 };
 /// Frames that are decoded together.
 struct Chunk {
-  std::vector<double> times;        ///< [s of labour]
-  std::size_t entries = 0;          ///< frames of the index it was made from, unreadable ones among them
+  std::vector<double> times;  ///< [s of labour]
+  std::size_t entries = 0;    ///< frames of the index it was made from, unreadable ones among them
   Packed position;
   std::vector<PackedField> fields;  ///< by Fields::kinds()
 };

@@ -32,8 +32,8 @@ struct Plot {
 /// The projection on the line from start to end that the trajectory plot shows; a column of its own.
 inline constexpr const char* axis_column = "head_axis_mm";
 
-/// The plots whose curves `folder` holds; lines of absent columns are left out. Appends `axis_column` to `curves` if the head's
-/// pose is there.
+/// The plots whose curves `folder` holds; lines of absent columns are left out. Appends `axis_column` to `curves` if
+/// the head's pose is there.
 std::vector<Plot> plots_of(const Folder& folder, observe::Table& curves);
 
 /// "mm", "deg", "mm/s" ... from a column's name; "" for ratios and counts.

@@ -82,7 +82,8 @@ http::response<SharedBody> respond(Site& site, const Request::value_type& reques
 /// One connection: read, answer, read again while the other side keeps it alive.
 class Session : public std::enable_shared_from_this<Session> {
  public:
-  Session(tcp::socket socket, Site& site, bool loopback) : stream_(std::move(socket)), site_(site), loopback_(loopback) {}
+  Session(tcp::socket socket, Site& site, bool loopback)
+      : stream_(std::move(socket)), site_(site), loopback_(loopback) {}
 
   void read() {
     request_.emplace();
@@ -150,8 +151,8 @@ Server::Server(Site& site, const std::string& address, unsigned short port) : pa
   if (!e) acceptor.bind(endpoint, e);
   if (!e) acceptor.listen(asio::socket_base::max_listen_connections, e);
   if (e)
-    throw InputError(fmt::format("{}:{}: cannot be listened at ({}); give another --port, 0 for a free one", address, port,
-                                 e.message()));
+    throw InputError(fmt::format("{}:{}: cannot be listened at ({}); give another --port, 0 for a free one", address,
+                                 port, e.message()));
   parts_->loopback = ip.is_loopback();
   parts_->accept();
 }

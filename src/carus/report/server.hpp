@@ -8,8 +8,9 @@
 
 namespace carus::report {
 
-/// HTTP/1.1 for a Site: GET and HEAD, nothing else. One thread; a connection that says nothing for 30 s is closed. On a loopback
-/// address only requests to a loopback name are answered, so that no page from elsewhere can read it under a name of its own.
+/// HTTP/1.1 for a Site: GET and HEAD, nothing else. One thread; a connection that says nothing for 30 s is closed. On a
+/// loopback address only requests to a loopback name are answered, so that no page from elsewhere can read it under a
+/// name of its own.
 class Server {
  public:
   /// `port` 0 takes a free one. Throws InputError if the address is none, or is taken.

@@ -48,7 +48,10 @@ void Site::refresh() {
   for (std::size_t i = 0; i < folders_.size(); ++i) {
     const auto now = stamp(folders_[i]);
     if (now == stamps_[i]) continue;
-    auto again = read_run(folders_[i], pack_, runs_[i].packer);
+    // Another scenario is another run: nothing of what was read still holds.
+    const auto yaml = folders_[i] / "scenario.resolved.yaml";
+    const bool same = fs::is_regular_file(yaml) && results::read_text(yaml) == runs_[i].folder.scenario_yaml;
+    auto again = read_run(folders_[i], pack_, same ? runs_[i].packer : nullptr);
     runs_[i] = std::move(again), stamps_[i] = now, changed = true;
   }
   if (changed) rebuild();
@@ -59,7 +62,8 @@ void Site::rebuild() {
   auto m = manifest_of(runs_, options_);
   blobs_before_ = std::move(blobs_);
   blobs_.clear();
-  for (auto& blob : m.blobs) blobs_.emplace(content_hash(blob), std::make_shared<const std::string>(std::move(blob.bytes)));
+  for (auto& blob : m.blobs)
+    blobs_.emplace(content_hash(blob), std::make_shared<const std::string>(std::move(blob.bytes)));
   manifest_ = std::make_shared<const std::string>(std::move(m.json));
   page_ = std::make_shared<const std::string>(page(viewer_, *manifest_, {}));
 }
@@ -82,7 +86,8 @@ Answer Site::get(std::string_view target) {
   if (path.starts_with(data_prefix)) {
     const auto name = path.substr(data_prefix.size());
     for (const auto* blobs : {&blobs_, &blobs_before_}) {
-      if (const auto it = blobs->find(name); it != blobs->end()) return {200, "application/octet-stream", it->second, true};
+      if (const auto it = blobs->find(name); it != blobs->end())
+        return {200, "application/octet-stream", it->second, true};
     }
     return failure(404, "no such data; load the page again");
   }

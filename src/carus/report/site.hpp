@@ -19,9 +19,9 @@ struct Answer {
   bool unchanging = false;  ///< the same address will always give the same bytes
 };
 
-/// What carus serve shows of results folders: the page at "/", its manifest at "/manifest.json", and the blobs by their contents' hash
-/// at "/data/HASH". Nothing else has an address, and no address ever becomes a file's name. Folders that change, as those of
-/// runs in progress do, are read anew; frames only the new ones. Thread-safe.
+/// What carus serve shows of results folders: the page at "/", its manifest at "/manifest.json", and the blobs by their
+/// contents' hash at "/data/HASH". Nothing else has an address, and no address ever becomes a file's name. Folders that
+/// change, as those of runs in progress do, are read anew; frames only the new ones. Thread-safe.
 class Site {
  public:
   /// Throws InputError as read_run does.

@@ -84,23 +84,25 @@ double needed_stretch(const Motion& m, const MonotoneCubic& s, const std::vector
   for (auto& p : problems) p += fmt::format("; --slow-down stretches time by {:.4g}", stretch);
   if (o.slow_down) problems.clear();
   if (o.limits.stroke && *high - *low > *o.limits.stroke) {
-    problems.push_back(fmt::format(
-        "stroke along the axis: {:.2f} mm, from {:.2f} at {:.1f} s to {:.2f} at {:.1f} s; allowed {:.4g} mm; slowing down "
-        "does not shorten it, another --axis may",
-        *high - *low, *low, m.time[std::size_t(low - points.begin())], *high,
-        m.time[std::size_t(high - points.begin())], *o.limits.stroke));
+    problems.push_back(
+        fmt::format("stroke along the axis: {:.2f} mm, from {:.2f} at {:.1f} s to {:.2f} at {:.1f} s; allowed {:.4g} "
+                    "mm; slowing down "
+                    "does not shorten it, another --axis may",
+                    *high - *low, *low, m.time[std::size_t(low - points.begin())], *high,
+                    m.time[std::size_t(high - points.begin())], *o.limits.stroke));
   }
   if (!problems.empty()) throw InputError(problems);
   return stretch * (stretch > 1 ? 1 + 1e-9 : 1);  // not over by the last digit
 }
 
 void name_columns(Trajectory& t) {
-  t.columns = {"time_s",           "labour_time_s",    "head_x_mm",       "head_y_mm",       "head_z_mm",
-               "turn_x_deg",       "turn_y_deg",       "turn_z_deg",      "quaternion_w",    "quaternion_x",
-               "quaternion_y",     "quaternion_z",     "velocity_x_mm_s", "velocity_y_mm_s", "velocity_z_mm_s",
-               "angular_x_deg_s",  "angular_y_deg_s",  "angular_z_deg_s"};
+  t.columns = {"time_s",          "labour_time_s",   "head_x_mm",       "head_y_mm",       "head_z_mm",
+               "turn_x_deg",      "turn_y_deg",      "turn_z_deg",      "quaternion_w",    "quaternion_x",
+               "quaternion_y",    "quaternion_z",    "velocity_x_mm_s", "velocity_y_mm_s", "velocity_z_mm_s",
+               "angular_x_deg_s", "angular_y_deg_s", "angular_z_deg_s"};
   if (t.has_wrench)
-    t.columns.insert(t.columns.end(), {"force_x_n", "force_y_n", "force_z_n", "moment_x_nm", "moment_y_nm", "moment_z_nm"});
+    t.columns.insert(t.columns.end(),
+                     {"force_x_n", "force_y_n", "force_z_n", "moment_x_nm", "moment_y_nm", "moment_z_nm"});
   t.columns.insert(t.columns.end(), {"axis_mm", "axis_speed_mm_s", "axis_acceleration_mm_s2", "imposed_linear_mm"});
   if (t.has_cyclic) t.columns.push_back("imposed_cyclic_mm");
 }
@@ -127,7 +129,8 @@ Motion motion_of(const Folder& folder, bool to_end) {
   Motion m;
   const auto time = column("time_s"), travel = column("head_travel_mm");
   std::vector<observe::Values> parts;
-  for (const char* name : {"head_x_mm", "head_y_mm", "head_z_mm", "head_turn_x_deg", "head_turn_y_deg", "head_turn_z_deg"})
+  for (const char* name :
+       {"head_x_mm", "head_y_mm", "head_z_mm", "head_turn_x_deg", "head_turn_y_deg", "head_turn_z_deg"})
     parts.push_back(column(name));
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3 u(parts[0][i], parts[1][i], parts[2][i]), r(parts[3][i], parts[4][i], parts[5][i]);
@@ -235,14 +238,16 @@ Reference imposed_cyclic(double duration, double amplitude, const labour::Contra
   return r;
 }
 
-Trajectory resample(const Motion& m, const std::optional<labour::Contractions>& contractions, const TrajectoryOptions& o) {
+Trajectory resample(const Motion& m, const std::optional<labour::Contractions>& contractions,
+                    const TrajectoryOptions& o) {
   Trajectory t;
   t.options = o;
   const auto points = along(m, o.axis);
   const MonotoneCubic axis(m.time, points);
   const double k = t.time_stretch = needed_stretch(m, axis, points, o);
   t.speed = axis.steepest(), t.acceleration = axis.most_curved();
-  t.speed = {t.speed.time * k, t.speed.value / k}, t.acceleration = {t.acceleration.time * k, t.acceleration.value / (k * k)};
+  t.speed = {t.speed.time * k, t.speed.value / k},
+  t.acceleration = {t.acceleration.time * k, t.acceleration.value / (k * k)};
   const auto [low, high] = std::minmax_element(points.begin(), points.end());
   t.stroke_low = *low, t.stroke_high = *high;
   t.axis_direction = direction(m, o.axis), t.start = m.start;
@@ -251,15 +256,16 @@ Trajectory resample(const Motion& m, const std::optional<labour::Contractions>& 
 
   const double begin = m.time.front(), duration = m.time.back() - begin;
   if (duration * k * o.rate > most_rows)
-    throw InputError(fmt::format("{:.0f} s at {:g} Hz are {:.2g} rows; allowed {:.0e}; lower --rate", duration * k, o.rate,
-                                 duration * k * o.rate, most_rows));
+    throw InputError(fmt::format("{:.0f} s at {:g} Hz are {:.2g} rows; allowed {:.0e}; lower --rate", duration * k,
+                                 o.rate, duration * k * o.rate, most_rows));
   const VectorCubic displacement(m.time, m.displacement), rotation(m.time, m.rotation);
   std::vector<Vec3> forces, moments;
   for (const auto& w : m.wrench) forces.push_back(w.force), moments.push_back(w.moment);
   std::optional<VectorCubic> force, moment;
   if (t.has_wrench) force.emplace(m.wrench_time, forces), moment.emplace(m.wrench_time, moments);
   const auto linear = imposed_linear(m.time.back(), points.back());
-  const auto cyclic = contractions ? imposed_cyclic(m.time.back(), points.back(), *contractions, imposed_recession) : linear;
+  const auto cyclic =
+      contractions ? imposed_cyclic(m.time.back(), points.back(), *contractions, imposed_recession) : linear;
 
   // The last row is the end itself, whatever the rate.
   const auto steps = std::size_t(std::ceil(duration * k * o.rate - 1e-9));
@@ -286,7 +292,8 @@ std::string as_csv(const Trajectory& t) {
   for (const auto& name : t.columns) out += (out.empty() ? "" : ",") + name;
   out += '\n';
   for (const auto& row : t.rows) {
-    for (std::size_t c = 0; c < row.size(); ++c) fmt::format_to(std::back_inserter(out), "{}{:.9g}", c == 0 ? "" : ",", row[c]);
+    for (std::size_t c = 0; c < row.size(); ++c)
+      fmt::format_to(std::back_inserter(out), "{}{:.9g}", c == 0 ? "" : ",", row[c]);
     out += '\n';
   }
   return out;
@@ -299,15 +306,16 @@ std::string as_json(const Trajectory& t, const Folder& folder) {
   Json j;
   j["format"] = "carus-trajectory-1";
   j["source"] = {{"scenario", folder.name()}, {"folder", folder.path.string()}, {"status", name_of(folder.status)}};
-  j["frame"] = {{"axes", "RAS: x to the mother's right, y anterior, z cranial"},
-                {"origin", "centre of the pelvic inlet"},
-                {"head_centre_at_start_mm", t.has_wrench ? vec(t.start) : Json(nullptr)},
-                {"position", "displacement of the skull's centre from its start"},
-                {"rotation", "from the start: turn is axis times angle; quaternion w, x, y, z; fixed axes"},
-                {"wrench", t.has_wrench ? Json("contact forces of the mother's tissues on the head, moment about its centre")
-                                        : Json(nullptr)}};
-  j["units"] = {{"time", "s"},      {"length", "mm"}, {"angle", "deg"},
-                {"force", "N"},     {"moment", "N m"}, {"speed", "mm/s, deg/s"}};
+  j["frame"] = {
+      {"axes", "RAS: x to the mother's right, y anterior, z cranial"},
+      {"origin", "centre of the pelvic inlet"},
+      {"head_centre_at_start_mm", t.has_wrench ? vec(t.start) : Json(nullptr)},
+      {"position", "displacement of the skull's centre from its start"},
+      {"rotation", "from the start: turn is axis times angle; quaternion w, x, y, z; fixed axes"},
+      {"wrench", t.has_wrench ? Json("contact forces of the mother's tissues on the head, moment about its centre")
+                              : Json(nullptr)}};
+  j["units"] = {{"time", "s"},  {"length", "mm"},  {"angle", "deg"},
+                {"force", "N"}, {"moment", "N m"}, {"speed", "mm/s, deg/s"}};
   j["rate_hz"] = t.options.rate;
   j["time_stretch"] = t.time_stretch;
   j["interpolation"] = {{"kind", "monotone cubic (Fritsch and Butland), continuous velocity"}, {"overshoot_mm", 0}};
@@ -320,10 +328,11 @@ std::string as_json(const Trajectory& t, const Folder& folder) {
   j["limits"] = {{"speed_mm_s", limit(t.options.limits.speed)},
                  {"acceleration_mm_s2", limit(t.options.limits.acceleration)},
                  {"stroke_mm", limit(t.options.limits.stroke)}};
-  j["imposed"] = {{"linear", "constant speed over the same time to the same place"},
-                  {"cyclic", t.has_cyclic ? Json(fmt::format("straight down in each contraction, back by {:g} of that in each rest",
-                                                             imposed_recession))
-                                          : Json(nullptr)}};
+  j["imposed"] = {
+      {"linear", "constant speed over the same time to the same place"},
+      {"cyclic", t.has_cyclic ? Json(fmt::format("straight down in each contraction, back by {:g} of that in each rest",
+                                                 imposed_recession))
+                              : Json(nullptr)}};
   j["columns"] = t.columns;
   std::string head = j.dump(1, ' ', false, Json::error_handler_t::replace);
   head.erase(head.find_last_of('}'));

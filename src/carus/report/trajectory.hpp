@@ -12,19 +12,19 @@
 
 namespace carus::report {
 
-/// The head's motion as a run put it out: displacement of its centre and rotation vector (axis times angle), both from the
-/// start; RAS.
+/// The head's motion as a run put it out: displacement of its centre and rotation vector (axis times angle), both from
+/// the start; RAS.
 struct Motion {
-  std::vector<double> time;                 ///< [s of labour]
-  std::vector<Vec3> displacement;           ///< [mm]
-  std::vector<Vec3> rotation;               ///< [deg], continuous: no jump by a turn
-  std::vector<double> travel;               ///< [mm] along the canal's axis
-  Vec3 start = Vec3::Zero();                ///< [mm] the centre at rest, where frames tell it
-  std::vector<double> wrench_time;          ///< of the frames; empty without frames
+  std::vector<double> time;         ///< [s of labour]
+  std::vector<Vec3> displacement;   ///< [mm]
+  std::vector<Vec3> rotation;       ///< [deg], continuous: no jump by a turn
+  std::vector<double> travel;       ///< [mm] along the canal's axis
+  Vec3 start = Vec3::Zero();        ///< [mm] the centre at rest, where frames tell it
+  std::vector<double> wrench_time;  ///< of the frames; empty without frames
   std::vector<Wrench> wrench;
 };
-/// Up to the first output after birth, or with `to_end` to the end. Throws InputError if the curves lack the columns, or hold fewer than
-/// two outputs or values that are not finite.
+/// Up to the first output after birth, or with `to_end` to the end. Throws InputError if the curves lack the columns,
+/// or hold fewer than two outputs or values that are not finite.
 Motion motion_of(const Folder& folder, bool to_end = false);
 /// Adds start and wrench from the frames; what cannot be read becomes a note.
 void add_wrench(Motion& motion, const Folder& folder, std::vector<std::string>& notes);
@@ -39,9 +39,10 @@ const char* name_of(Axis axis);
 std::vector<double> along(const Motion& motion, Axis axis);  ///< [mm] from the start, at motion.time
 Vec3 direction(const Motion& motion, Axis axis);             ///< unit; zero for `path`
 
-/// The trajectory that BirthSIM imposes in place of a computed one, with the amplitude, the duration and the contractions of this run.
-/// Linear: constant speed. Cyclic: down at constant speed from the start of each contraction to the end of its plateau, back by
-/// `recession` of that at constant speed in the rest after it; all contractions alike. Points (time [s], mm), straight between.
+/// The trajectory that BirthSIM imposes in place of a computed one, with the amplitude, the duration and the
+/// contractions of this run. Linear: constant speed. Cyclic: down at constant speed from the start of each contraction
+/// to the end of its plateau, back by `recession` of that at constant speed in the rest after it; all contractions
+/// alike. Points (time [s], mm), straight between.
 struct Reference {
   std::vector<double> time, value;
   [[nodiscard]] double at(double t) const;
@@ -63,9 +64,9 @@ struct TrajectoryOptions {
 /// Resampled: every quantity by a MonotoneCubic through the outputs.
 struct Trajectory {
   TrajectoryOptions options;
-  double time_stretch = 1;                            ///< seconds here per second of labour
-  MonotoneCubic::Extreme speed{}, acceleration{};     ///< largest along the axis, in stretched time
-  double stroke_low = 0, stroke_high = 0;             ///< [mm] the axis' range
+  double time_stretch = 1;                         ///< seconds here per second of labour
+  MonotoneCubic::Extreme speed{}, acceleration{};  ///< largest along the axis, in stretched time
+  double stroke_low = 0, stroke_high = 0;          ///< [mm] the axis' range
   Vec3 axis_direction = Vec3::Zero(), start = Vec3::Zero();
   bool has_wrench = false, has_cyclic = false;
   std::vector<std::string> columns;

@@ -14,7 +14,8 @@ std::string in_words(const Folder& folder, const Verdict& v) {
                                     : fmt::format("{} of {} asked parameters are outside", v.outside, asked);
   if (v.not_asked > 0) text += fmt::format(", {} not asked", v.not_asked);
   if (folder.status == RunStatus::in_progress)
-    text += fmt::format("; the run has not ended, judged as it stands at {:.1f} min", folder.curves.rows.back()[0] / 60);
+    text +=
+        fmt::format("; the run has not ended, judged as it stands at {:.1f} min", folder.curves.rows.back()[0] / 60);
   if (folder.status == RunStatus::failed) text += "; the run failed";
   return (v.met ? "MET: " : "NOT MET: ") + text;
 }
@@ -55,7 +56,10 @@ std::string as_text(const Folder& folder, const Verdict& verdict) {
   for (const auto& r : verdict.rows) {
     out += fmt::format("{:7} {}  {}  {}  {:9}  {}\n", r.number > 0 ? fmt::format("band {}", r.number) : "paper",
                        padded(r.what, what), padded(r.expected, expected), padded(r.obtained, obtained),
-                       !r.asked ? "not asked" : r.inside ? "inside" : "OUTSIDE", r.source);
+                       !r.asked   ? "not asked"
+                       : r.inside ? "inside"
+                                  : "OUTSIDE",
+                       r.source);
   }
   return out + verdict.line + "\n";
 }

@@ -47,7 +47,8 @@ Head::Head(const FrameMesh& mesh, const std::string& file) {
     fetus.push_back(mesh.tets[e]);
     const auto& region = mesh.regions[mesh.region[e]];
     if (region == "skull") skull_.insert(skull_.end(), mesh.tets[e].begin(), mesh.tets[e].end());
-    if (region != "skull" && region != "fetal_skin") other.insert(other.end(), mesh.tets[e].begin(), mesh.tets[e].end());
+    if (region != "skull" && region != "fetal_skin")
+      other.insert(other.end(), mesh.tets[e].begin(), mesh.tets[e].end());
   }
   sort_unique(skull_), sort_unique(other);
   for (const auto& facet : boundary(fetus)) skin_.insert(skin_.end(), facet.begin(), facet.end());

@@ -103,16 +103,16 @@ std::vector<Band> validation_of(const Figures& f) {
     rows.push_back({0, std::move(what), std::move(expected), "paper, " + section, std::move(obtained), inside, asked});
   };
   const bool born = f.birth_time.has_value();
-  row("duration to expulsion", "32 min; met within 15-60", "5, 5.1", born ? number(*f.birth_time / 60, " min") : "not born",
-      born && within(*f.birth_time / 60, 15, 60));
+  row("duration to expulsion", "32 min; met within 15-60", "5, 5.1",
+      born ? number(*f.birth_time / 60, " min") : "not born", born && within(*f.birth_time / 60, 15, 60));
   row("contractions to expulsion", "8; met within 6-10", "5", born ? fmt::format("{}", f.contractions) : "not born",
       born && within(f.contractions, 6, 10));
   row("head displacement X (left-right)", "51.5 mm", "5.1, Fig. 12", number(f.amplitude[0], " mm"),
       within(f.amplitude[0], 40, 65), false);  // needs an asymmetry that no symmetric anatomy has
-  row("head displacement Y (antero-posterior)", "63.5 mm; met within 40-90", "5.1, Fig. 12", number(f.amplitude[1], " mm"),
-      within(f.amplitude[1], 40, 90));
-  row("head displacement Z (cranio-caudal)", "184 mm; met within 160-220", "5.1, Fig. 12", number(f.amplitude[2], " mm"),
-      within(f.amplitude[2], 160, 220));
+  row("head displacement Y (antero-posterior)", "63.5 mm; met within 40-90", "5.1, Fig. 12",
+      number(f.amplitude[1], " mm"), within(f.amplitude[1], 40, 90));
+  row("head displacement Z (cranio-caudal)", "184 mm; met within 160-220", "5.1, Fig. 12",
+      number(f.amplitude[2], " mm"), within(f.amplitude[2], 160, 220));
   row("mean head speed", "0.09 mm/s (statistics 0.11); met within 0.08-0.15", "5.1", number(f.speed.mean, " mm/s"),
       within(f.speed.mean, 0.08, 0.15));
   row("head velocity between contractions", "negative: the head recedes; met in 3 rests or more", "5.1, Fig. 13",
@@ -122,7 +122,8 @@ std::vector<Band> validation_of(const Figures& f) {
   row("uterus length at the exit", "230 -> 80 mm, about -2/3; met within 0.30-0.45 of the start", "5.2, Fig. 14",
       fmt::format("{:.0f} -> {:.0f} mm, {:.2f}", f.uterus_start, f.uterus_end, ratio), within(ratio, 0.30, 0.45));
   row("lateral points of the uterus", "opposite directions", "5.2, Fig. 16",
-      fmt::format("left {:.1f} mm, right {:.1f} mm", f.lateral_left, f.lateral_right), f.lateral_left * f.lateral_right < 0);
+      fmt::format("left {:.1f} mm, right {:.1f} mm", f.lateral_left, f.lateral_right),
+      f.lateral_left * f.lateral_right < 0);
   row("sacrum/coccyx angle, peaks", "2", "5.3, Fig. 17", fmt::format("{}", f.sacrum_peaks.size()),
       f.sacrum_peaks.size() == 2);
   row("sacrum/coccyx angle at the end", "does not return to its start", "5.3, Fig. 17", number(f.sacrum_end, " deg"),

@@ -59,8 +59,9 @@ struct Band {
   bool inside;
   bool asked = true;
 };
-/// Whether all loads are within what the literature covers (push up to 70 mmHg, tone up to 12 mmHg): then a run is judged
-/// by physiology. The reference keeps the paper's numbers and is not asked for pressures that the paper does not have.
+/// Whether all loads are within what the literature covers (push up to 70 mmHg, tone up to 12 mmHg): then a run is
+/// judged by physiology. The reference keeps the paper's numbers and is not asked for pressures that the paper does not
+/// have.
 bool has_literature_loads(const scenario::Loads& loads);
 /// Bands 1-8 and 10; 9 and 11 compare several runs.
 std::vector<Band> bands_of(const Figures& figures, const scenario::Loads& loads);

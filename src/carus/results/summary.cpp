@@ -111,8 +111,8 @@ std::string summary_json(const Figures& f, const scenario::Scenario& s, const Ru
   j["calibrated"] = Json::array();
   for (const auto& c : s.calibrated) j["calibrated"].push_back({{"key", c.key}, {"to", c.to}});
   const auto judged = [](const Band& b) -> Json {
-    return {{"what", b.what},   {"expected", b.expected}, {"source", b.source}, {"obtained", b.obtained},
-            {"inside", b.inside}, {"asked", b.asked}};
+    return {{"what", b.what},         {"expected", b.expected}, {"source", b.source},
+            {"obtained", b.obtained}, {"inside", b.inside},     {"asked", b.asked}};
   };
   j["validation"] = Json::array();
   for (const auto& b : validation_of(f)) j["validation"].push_back(judged(b));

@@ -29,7 +29,8 @@ TEST(MonotoneCubic, StaysOutsideItsPointsWhatItWasAtTheEnds) {
   EXPECT_EQ(one.value(0), 7), EXPECT_EQ(one.slope(1), 0), EXPECT_EQ(one.steepest().value, 0);
 }
 
-/// Against t³/3 + t: the error falls with the square of the interval at least (Fritsch and Butland's slopes are second order).
+/// Against t³/3 + t: the error falls with the square of the interval at least (Fritsch and Butland's slopes are second
+/// order).
 TEST(MonotoneCubic, ConvergesOnASmoothMonotoneCurve) {
   const auto worst = [](int n) {
     std::vector<double> t, y;

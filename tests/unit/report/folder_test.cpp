@@ -100,7 +100,8 @@ TEST_F(ResultsFolder, WhatElseIsSpoiltBecomesANote) {
 }
 
 TEST_F(ResultsFolder, ASummaryOfAnotherFormIsNotTrusted) {
-  test::set_text(dir / "summary.json", R"({"outcome": 7, "numerics": [1], "declared": "x", "calibrated": [1, {"key": 2}], "wall_s": null})");
+  test::set_text(dir / "summary.json",
+                 R"({"outcome": 7, "numerics": [1], "declared": "x", "calibrated": [1, {"key": 2}], "wall_s": null})");
   const std::vector<Run> runs = {read_run(dir)};
   EXPECT_EQ(runs[0].folder.status, RunStatus::failed);
   EXPECT_NE(manifest_of(runs, {}).json, "");

@@ -87,8 +87,11 @@ TEST_F(PackedFrames, ADamagedOneIsLeftOutAndNamed) {
   const auto file = dir / "frames/frame_0007.vtu";
   const auto whole = test::text_of(file);
   const auto count = read_frame_index(dir / "frames.pvd").size();
-  const auto spoilt = {std::string(), std::string("<VTKFile>"), whole.substr(0, whole.size() / 2),
-                       whole.substr(0, whole.size() / 2) + "</VTKFile>\n", std::string("</VTKFile>"),
+  const auto spoilt = {std::string(),
+                       std::string("<VTKFile>"),
+                       whole.substr(0, whole.size() / 2),
+                       whole.substr(0, whole.size() / 2) + "</VTKFile>\n",
+                       std::string("</VTKFile>"),
                        std::string(whole).replace(whole.size() / 2, 400, std::string(400, '\xff'))};
   int refused = 0;
   for (const auto& text : spoilt) {
@@ -116,7 +119,8 @@ TEST_F(PackedFrames, OfAnotherMeshAreLeftOut) {
   fem::State state;
   state.x = model.mesh.nodes, state.v.assign(state.x.size(), Vec3::Zero());
   other.write(state, {});
-  fs::copy_file(folder / "other/frames/frame_0000.vtu", dir / "frames/frame_0003.vtu", fs::copy_options::overwrite_existing);
+  fs::copy_file(folder / "other/frames/frame_0000.vtu", dir / "frames/frame_0003.vtu",
+                fs::copy_options::overwrite_existing);
   auto p = packer();
   p.update();
   ASSERT_EQ(p.notes().size(), 1u);
@@ -141,7 +145,8 @@ TEST_F(PackedFrames, AnIndexThatLeadsOutOfTheFolderOrIsTornIsRefused) {
   EXPECT_THAT(index("<DataSet timestep=\"0\" file=\"../../etc/passwd\"/>"), HasSubstr("inside the folder"));
   EXPECT_THAT(index("<DataSet timestep=\"0\" file=\"/etc/passwd\"/>"), HasSubstr("inside the folder"));
   EXPECT_THAT(index("<DataSet timestep=\"x\" file=\"a.vtu\"/>"), HasSubstr("timestep \"x\""));
-  EXPECT_THAT(index("<DataSet timestep=\"1\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"b.vtu\"/>"), HasSubstr("frame 1"));
+  EXPECT_THAT(index("<DataSet timestep=\"1\" file=\"a.vtu\"/><DataSet timestep=\"1\" file=\"b.vtu\"/>"),
+              HasSubstr("frame 1"));
   EXPECT_THAT(index("<DataSet timestep=\"1\""), HasSubstr("does not end"));
   EXPECT_THAT(index("<DataSet/>"), HasSubstr("no timestep"));
   test::set_text(dir / "frames.pvd", "");
@@ -151,7 +156,8 @@ TEST_F(PackedFrames, AnIndexThatLeadsOutOfTheFolderOrIsTornIsRefused) {
 TEST_F(PackedFrames, OfARunInProgressAreAddedWithoutReadingTheOldOnes) {
   const auto whole = test::text_of(dir / "frames.pvd");
   auto cut = whole;
-  cut.erase(cut.find("    <DataSet timestep", cut.find("frame_0008")), cut.find("  </Collection>") - cut.find("    <DataSet timestep", cut.find("frame_0008")));
+  cut.erase(cut.find("    <DataSet timestep", cut.find("frame_0008")),
+            cut.find("  </Collection>") - cut.find("    <DataSet timestep", cut.find("frame_0008")));
   test::set_text(dir / "frames.pvd", cut);
   auto p = packer();
   p.update();

@@ -85,8 +85,9 @@ TEST_F(Served, HeadTellsTheLengthAndSendsNothing) {
 }
 
 TEST_F(Served, NothingElseHasAnAddress) {
-  for (const char* path : {"/../../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/data/../curves.csv", "/curves.csv", "//etc/passwd",
-                           "/data/", "/data/0", "/data//etc/passwd", "/log.txt", "/index.html/x", "http://elsewhere/x"}) {
+  for (const char* path :
+       {"/../../../../etc/passwd", "/%2e%2e/%2e%2e/etc/passwd", "/data/../curves.csv", "/curves.csv", "//etc/passwd",
+        "/data/", "/data/0", "/data//etc/passwd", "/log.txt", "/index.html/x", "http://elsewhere/x"}) {
     EXPECT_THAT(request(std::string("GET ") + path), StartsWith("HTTP/1.1 404")) << path;
   }
 }
@@ -106,10 +107,11 @@ TEST_F(Served, AnotherHostNameIsRefused) {
 }
 
 TEST_F(Served, NonsenseIsHungUpOnAndTheNextIsServed) {
-  for (const std::string& nonsense : {std::string("\r\n\r\n\r\n"), std::string("GET\r\n\r\n"), std::string(200000, 'A') + "\r\n\r\n",
-                                      std::string("GET / HTTP/9.9\r\n\r\n"), std::string("\x16\x03\x01\x02\0\x01", 6) + "\r\n\r\n",
-                                      "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100000, 'x') + "\r\n\r\n",
-                                      std::string("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999\r\n\r\nx")}) {
+  for (const std::string& nonsense :
+       {std::string("\r\n\r\n\r\n"), std::string("GET\r\n\r\n"), std::string(200000, 'A') + "\r\n\r\n",
+        std::string("GET / HTTP/9.9\r\n\r\n"), std::string("\x16\x03\x01\x02\0\x01", 6) + "\r\n\r\n",
+        "GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(100000, 'x') + "\r\n\r\n",
+        std::string("POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 99999999999\r\n\r\nx")}) {
     EXPECT_THAT(say(nonsense), Not(HasSubstr("200 OK")));
     EXPECT_THAT(request("GET /"), StartsWith("HTTP/1.1 200"));
   }

@@ -82,8 +82,8 @@ TEST(Trajectory, AngularVelocityIsThatOfTheRotation) {
   double largest = 0;
   for (const std::size_t i : {5005u, 20010u, 40010u}) {
     const auto q = [&](std::size_t row) {
-      return Eigen::Quaterniond(cell(t, row, "quaternion_w"), cell(t, row, "quaternion_x"), cell(t, row, "quaternion_y"),
-                                cell(t, row, "quaternion_z"));
+      return Eigen::Quaterniond(cell(t, row, "quaternion_w"), cell(t, row, "quaternion_x"),
+                                cell(t, row, "quaternion_y"), cell(t, row, "quaternion_z"));
     };
     const Eigen::AngleAxisd turn(q(i + 1) * q(i - 1).conjugate());  // in fixed axes
     const Vec3 w = turn.axis() * turn.angle() / 0.02 * 180 / pi;
@@ -153,7 +153,8 @@ TEST(Imposed, CyclicGoesDownInContractionsAndBackInRestsToTheSameEnd) {
 TEST(Motion, IsUnwrappedWhereTheRotationPassesHalfATurn) {
   Folder f;
   f.path = "x";
-  f.curves.names = {"time_s", "head_x_mm", "head_y_mm", "head_z_mm", "head_travel_mm", "head_turn_x_deg", "head_turn_y_deg", "head_turn_z_deg"};
+  f.curves.names = {"time_s",         "head_x_mm",       "head_y_mm",       "head_z_mm",
+                    "head_travel_mm", "head_turn_x_deg", "head_turn_y_deg", "head_turn_z_deg"};
   for (int i = 0; i <= 20; ++i) {
     double turn = 15.0 * i;  // to 300°; a fit reports it within ±180
     if (turn > 180) turn -= 360;

@@ -42,7 +42,8 @@ TEST(Verdict, OfARunInsideAllThatIsAskedIsMet) {
   };
   // 7.2 contractions of 22 mm net a period, then born; as in the test of the figures.
   f.curves.rows.clear();
-  for (double t = 0; t <= 1900; t += 4) f.curves.rows.emplace_back(f.curves.names.size(), 0.0), f.curves.rows.back()[0] = t;
+  for (double t = 0; t <= 1900; t += 4)
+    f.curves.rows.emplace_back(f.curves.names.size(), 0.0), f.curves.rows.back()[0] = t;
   const auto descent = [&](double t) {
     double z = 0;
     for (double s = 0; s < t; s += 1) {

@@ -85,7 +85,8 @@ TEST(Bands, AskForPressuresOfTheLiteratureWhereTheLoadsClaimThem) {
     }
     return names;
   };
-  const std::vector<std::string> pressures = {"pressure: base", "pressure: contraction above base", "pressure: with push"};
+  const std::vector<std::string> pressures = {"pressure: base", "pressure: contraction above base",
+                                              "pressure: with push"};
   auto loads = paper_loads();
   EXPECT_EQ(asked(loads), pressures);
   loads.push.amplitude = 50 * units::mmHg;
