@@ -3,7 +3,7 @@
 import { Clock } from './clock';
 import { CurvesPanel } from './curves/panel';
 import { Decoder } from './data/decoder';
-import { ReportError, type Manifest } from './data/format';
+import type { Manifest } from './data/format';
 import { Run } from './data/run';
 import { captionOf, compose, Recorder } from './scene/record';
 import { download, fileName, h, iconButton } from './ui/dom';
@@ -140,6 +140,8 @@ export class App {
     }
     this.picture.append(this.status);
     this.status.textContent = 'Decoding …';
+    const unread = (error?: Error) => error && this.tell(`Some frames cannot be read: ${reason(error)}`);
+    run.onChange = unread;
     try {
       await run.openMesh();
       // The last frame tells how far the picture must reach.
@@ -165,7 +167,7 @@ export class App {
       return;
     }
     const viewer = this.viewer;
-    viewer.onError = (error) => this.tell(`Some frames cannot be read: ${reason(error)}`);
+    viewer.onError = unread;
     viewer.stage.canvas.tabIndex = 0;
     viewer.stage.canvas.setAttribute('role', 'img');
     viewer.stage.canvas.setAttribute(
@@ -217,14 +219,7 @@ export class App {
     const viewer = this.viewer;
     if (viewer) {
       viewer.tick(now, seconds);
-      const { waiting } = viewer;
-      const text = waiting
-        ? 'Decoding …'
-        : viewer.measuring && !viewer.measure.complete
-          ? viewer.measure.points.length
-            ? 'Click the second point'
-            : 'Click the first point'
-          : '';
+      const text = this.statusText(viewer);
       if (this.status.textContent !== text) this.status.textContent = text;
       if (this.recorder.recording) {
         this.recorder.frame((canvas) => this.composeInto(canvas, false));
@@ -233,6 +228,15 @@ export class App {
     }
     this.timeline.follow();
     this.curves?.follow();
+  }
+
+  private statusText(viewer: Viewer): string {
+    if (viewer.waiting) {
+      const failed = viewer.body.run.failedAt(this.clock.time, this.choices.field);
+      return failed ? 'The frames of this moment cannot be read' : 'Decoding …';
+    }
+    if (!viewer.measuring || viewer.measure.complete) return '';
+    return viewer.measure.points.length ? 'Click the second point' : 'Click the first point';
   }
 
   private toggleOrgans(): void {
@@ -340,7 +344,8 @@ export class App {
 }
 
 export function reason(error: unknown): string {
-  return error instanceof ReportError || error instanceof Error ? error.message : String(error);
+  const text = error instanceof Error ? error.message : String(error);
+  return text || 'damaged data';
 }
 
 /** How far a run in progress has come, in words. */

@@ -252,8 +252,14 @@ export class Viewer {
   /** Picks at a place of the picture, 0…1 from its upper left. */
   pickAt(x: number, y: number): void {
     const { camera } = this.stage;
-    const direction = new Vector3(2 * x - 1, 1 - 2 * y, 0.5).unproject(camera).sub(camera.position).normalize();
-    const hit = pick(this.body, new Ray(camera.position.clone(), direction), this.plane(), (entry) => this.whole(entry.region));
+    camera.updateMatrixWorld();
+    const plane = this.plane();
+    const at = (u: number, v: number) => {
+      const direction = new Vector3(2 * u - 1, 1 - 2 * v, 0.5).unproject(camera).sub(camera.position).normalize();
+      return pick(this.body, new Ray(camera.position.clone(), direction), plane, (entry) => this.whole(entry.region));
+    };
+    // A ray exactly through an edge may slip between its two facets: then one beside it, less than a pixel away.
+    const hit = at(x, y) ?? at(x + 3e-4, y + 2e-4);
     if (!hit) return;
     this.measure.add(hit.point);
     this.changed();

@@ -81,6 +81,7 @@ test('everything can be done by keyboard', async ({ page }) => {
   const theme = await page.locator('html').getAttribute('data-theme');
   await page.keyboard.press('t');
   await expect(page.locator('html')).not.toHaveAttribute('data-theme', theme!);
+  await goTo(page, 300);
   await page.keyboard.press('m');
   await picture(page).focus();
   await page.keyboard.press('Enter');
@@ -170,7 +171,12 @@ test('pieces of data that are missing or damaged are named; the rest is shown', 
   blobs.data[manifest.runs[0].curves!.blob] = Buffer.alloc(0);
   await openAny(page, onDisk(spliced(scripts(manifest, blobs))), 'ready');
   await expect(page.locator('.notices')).toContainText('The curves cannot be read: The page is cut short');
-  await expect(page.locator('.stage')).toContainText('The shapes cannot be read');
+  await expect(page.locator('.notices')).toContainText('Some frames cannot be read');
+  await goTo(page, 590);
+  await expect(page.locator('.stage')).toContainText('The frames of this moment cannot be read');
+  await goTo(page, 100);
+  await expect(page.locator('.decode-status')).toHaveText('');
+  await expect(page.locator('.decode-status')).toBeHidden();
   await expect(page.locator('.verdict-table tbody tr')).toHaveCount(4);
 });
 

@@ -126,7 +126,8 @@ test('the colour scale gets lighter from end to end', () => {
 });
 
 test('numbers and times are written as people read them', () => {
-  expect([0, -0.00004, 184.496, -12.5, 0.0898, 1234.5, null, NaN].map(numberText)).toEqual([
+  expect([0, -4e-14, -0.00004, 184.496, -12.5, 0.0898, 1234.5, null, NaN].map(numberText)).toEqual([
+    '0',
     '0',
     '−4.0e−5',
     '184.5',

@@ -59,9 +59,6 @@ export class Chart {
         h(
           'span',
           { class: 'tools' },
-          iconButton('plus', `Zoom in: ${plot.title}`, () => this.window.zoom(0.5, this.clock.time / 60)),
-          iconButton('minus', `Zoom out: ${plot.title}`, () => this.window.zoom(2, this.clock.time / 60)),
-          iconButton('reset', `All of the time: ${plot.title}`, () => this.window.reset()),
           iconButton('download', `Save as CSV: ${plot.title}`, () => this.saveCsv()),
           iconButton('image', `Save as PNG: ${plot.title}`, () => this.savePng()),
         ),
@@ -123,7 +120,7 @@ export class Chart {
     const options: uPlot.Options = {
       width: Math.max(80, this.holder.clientWidth),
       height: HEIGHT,
-      padding: [9, 8, 0, 0],
+      padding: [9, 18, 0, 0],
       legend: { show: false },
       cursor: { y: false, drag: { x: false, y: false }, points: { size: 6 } },
       scales: {
@@ -264,31 +261,28 @@ export class Chart {
       ctx.restore();
     }
     ctx.textAlign = 'right';
+    const y = (value: number) => u.valToPos(value, 'y', true);
+    for (const mark of this.plot.marks)
+      for (const value of edges(mark).filter((v) => y(v) >= bbox.top && y(v) <= bottom))
+        line(ctx, bbox.left, y(value), right, y(value), this.colours.bandEdge, mark.kind === 'value' ? [5 * ratio, 3 * ratio] : []);
     const taken: number[] = [];
     for (const mark of this.plot.marks) {
-      const ends = edges(mark);
-      for (const value of ends) {
-        const y = u.valToPos(value, 'y', true);
-        if (y >= bbox.top && y <= bottom)
-          line(ctx, bbox.left, y, right, y, this.colours.bandEdge, mark.kind === 'value' ? [5 * ratio, 3 * ratio] : []);
-      }
+      const ends = edges(mark).map(y);
       if (!ends.length) continue;
-      const top = Math.min(...ends.map((value) => u.valToPos(value, 'y', true)));
+      const [top, base] = [Math.min(...ends), Math.max(...ends)];
       let label = mark.label;
-      let y = top + 11 * ratio;
-      if (top > bottom) [label, y] = [`↓ ${mark.label}`, bottom - 4 * ratio];
-      else if (Math.max(...ends.map((value) => u.valToPos(value, 'y', true))) < bbox.top)
-        [label, y] = [`↑ ${mark.label}`, bbox.top + 11 * ratio];
-      else if (mark.kind === 'value' && top - 4 * ratio > bbox.top + 8 * ratio) y = top - 4 * ratio;
-      y = Math.min(bottom - 3 * ratio, Math.max(bbox.top + 10 * ratio, y));
-      while (taken.some((other) => Math.abs(other - y) < 11 * ratio)) y += 12 * ratio;
-      taken.push(y);
+      let at = mark.kind === 'value' && top - 12 * ratio > bbox.top ? top - 4 * ratio : top + 11 * ratio;
+      if (top > bottom) [label, at] = [`↓ ${mark.label}`, bottom];
+      else if (base < bbox.top) [label, at] = [`↑ ${mark.label}`, bbox.top];
+      at = Math.min(bottom - 3 * ratio, Math.max(bbox.top + 10 * ratio, at));
+      while (taken.some((other) => Math.abs(other - at) < 11 * ratio) && at < bottom - 14 * ratio) at += 12 * ratio;
+      taken.push(at);
       ctx.fillStyle = this.colours.bandEdge;
       ctx.strokeStyle = this.colours.background;
       ctx.lineWidth = 3 * ratio;
       ctx.lineJoin = 'round';
-      ctx.strokeText(label, right - 22 * ratio, y);
-      ctx.fillText(label, right - 22 * ratio, y);
+      ctx.strokeText(label, right - 22 * ratio, at);
+      ctx.fillText(label, right - 22 * ratio, at);
       ctx.lineWidth = ratio;
     }
     ctx.restore();

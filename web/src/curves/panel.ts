@@ -2,7 +2,7 @@
 // All plots, one under or beside the other.
 import type { Clock } from '../clock';
 import type { Run } from '../data/run';
-import { download, fileName, h } from '../ui/dom';
+import { download, fileName, h, iconButton } from '../ui/dom';
 import { Chart } from './chart';
 import { Window } from './window';
 
@@ -25,6 +25,13 @@ export class CurvesPanel {
         h('h2', { id: 'curves-title' }, 'Curves'),
         h('span', { class: 'key' }, h('i', { class: 'key-contraction' }), 'contraction', h('i', { class: 'key-band' }), 'expected'),
         h('span', { class: 'spacer' }),
+        h(
+          'span',
+          { class: 'tools', role: 'group', 'aria-label': 'Zoom' },
+          iconButton('plus', 'Zoom in', () => window.zoom(0.5, clock.time / 60)),
+          iconButton('minus', 'Zoom out', () => window.zoom(2, clock.time / 60)),
+          iconButton('reset', 'All of the time', () => window.reset()),
+        ),
         h(
           'button',
           { type: 'button', class: 'quiet', click: () => saveAll(runs), disabled: !runs.some((run) => run.curves) },

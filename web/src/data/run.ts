@@ -33,6 +33,11 @@ class Series {
     return { values: slot.values, offset: (frame - this.chunks[c].first) * this.width };
   }
 
+  /** Whether the piece that holds frame `frame`, or the next frame, could not be read. */
+  failedAt(frame: number): boolean {
+    return this.slots[this.chunkOf(frame)]?.state === 'failed' || this.slots[this.chunkOf(frame + 1)]?.state === 'failed';
+  }
+
   isHere(c: number): boolean {
     return this.slots[c].state === 'here';
   }
@@ -232,6 +237,13 @@ export class Run {
       return true;
     }
     return this.interpolate(this.seriesOf(field), time, out);
+  }
+
+  /** Whether what would be shown at `time` could not be read. */
+  failedAt(time: number, fieldName: string): boolean {
+    this.locate(time, this.place);
+    const frame = this.place.frame;
+    return this.positions?.failedAt(frame) === true || this.fields.get(fieldName)?.failedAt(frame) === true;
   }
 
   /** Asks for the next chunk that is missing near `time`: positions first, then the field shown. One at a time. */

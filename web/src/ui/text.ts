@@ -10,9 +10,10 @@ export function clockText(seconds: number): string {
 /** About four figures, a real minus sign, no trailing zeros. */
 export function numberText(value: number | null | undefined): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
-  const size = Math.abs(value);
+  // What is left of sums that cancel.
+  const size = Math.abs(value) < 1e-9 ? 0 : Math.abs(value);
   const digits = size >= 1000 ? 0 : size >= 100 ? 1 : size >= 1 ? 2 : size >= 0.01 ? 3 : 4;
-  let text = size !== 0 && size < 1e-4 ? value.toExponential(1) : value.toFixed(digits);
+  let text = size !== 0 && size < 1e-4 ? value.toExponential(1) : (size && value).toFixed(digits);
   if (text.includes('.') && !text.includes('e')) text = text.replace(/\.?0+$/, '');
   if (text === '-0') text = '0';
   return text.replace(/-/g, '−');
