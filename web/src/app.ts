@@ -52,7 +52,8 @@ export class App {
     this.runs = manifest.runs.map((info, index) => new Run(index, info, this.decoder));
     const shown = this.runs[0];
     this.clock = new Clock(Math.max(...this.runs.map((run) => run.info.duration_s)), shown.times);
-    this.clock.set(choices.time);
+    // Who follows a birth in progress sees its newest moment.
+    this.clock.set(choices.follow ? this.clock.duration : choices.time);
     this.clock.onChange(() => (choices.time = this.clock.time));
     this.theme = new Theme(() => this.recolour());
     this.keyboard = new Keyboard({

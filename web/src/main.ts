@@ -8,6 +8,7 @@ import { h } from './ui/dom';
 import { Choices } from './viewer';
 
 const host = document.getElementById('app')!;
+const choices = new Choices();
 
 function fail(message: string): void {
   host.dataset.state = 'failed';
@@ -38,9 +39,17 @@ class Live {
 
   private say(text: string): void {
     this.banner.replaceChildren(h('span', { class: 'pulse' }), text);
+    const follow = h('input', { type: 'checkbox' });
+    follow.checked = choices.follow;
+    follow.addEventListener('change', () => {
+      choices.follow = follow.checked;
+      if (this.latest && choices.follow) this.show(this.latest);
+    });
+    this.banner.append(h('label', { class: 'check' }, follow, 'show what is new by itself'));
     if (!this.latest) return;
     const latest = this.latest;
-    this.banner.append(h('button', { type: 'button', class: 'primary', click: () => this.show(latest) }, 'Show it'));
+    if (choices.follow) this.show(latest);
+    else this.banner.append(h('button', { type: 'button', class: 'primary', click: () => this.show(latest) }, 'Show it'));
   }
 
   stop(): void {
@@ -75,7 +84,6 @@ class Live {
   }
 }
 
-const choices = new Choices();
 let app: App | null = null;
 let live: Live | null = null;
 

@@ -40,6 +40,8 @@ export class Choices {
   ghost: number | null = null;
   pose: { position: number[]; target: number[] } | null = null;
   time = 0;
+  /** Of a birth in progress: show what is new without asking. */
+  follow = false;
 }
 
 const GHOST_COLOUR = '#1f78d1';

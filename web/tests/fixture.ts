@@ -2,7 +2,7 @@
 // A small report with known contents, coded as docs/reference/report_format.md says: a cube of fetal skin, 60 mm wide, that goes down
 // 120 mm in 600 s beside a bone, inside a box of abdomen.
 import { deflateSync } from 'node:zlib';
-import { mkdtempSync, readFileSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
@@ -307,6 +307,7 @@ export function spliced(payload: string): string {
 }
 
 const folder = mkdtempSync(join(tmpdir(), 'carus-viewer-'));
+process.on('exit', () => rmSync(folder, { recursive: true, force: true }));
 let pages = 0;
 
 /** Writes a page and gives its file:// address. */

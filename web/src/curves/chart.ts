@@ -14,6 +14,7 @@ const HEIGHT = 178;
 const FONT = '11px system-ui, sans-serif';
 /** Marks that would squeeze the curves into less than 1/SQUEEZE of the height are named at the edge instead. */
 const SQUEEZE = 3.5;
+const READ_MS = 120;
 
 export class Chart {
   readonly element: HTMLElement;
@@ -27,6 +28,7 @@ export class Chart {
   private visible = false;
   private hovered: number | null = null;
   private shown = NaN;
+  private shownAt = 0;
 
   constructor(
     readonly plot: Plot,
@@ -296,8 +298,11 @@ export class Chart {
 
   private showValues(): void {
     const minutes = this.hovered ?? this.clock.time / 60;
-    if (minutes === this.shown) return;
+    const now = performance.now();
+    // Nobody reads figures faster than that.
+    if (minutes === this.shown || (this.clock.playing && now - this.shownAt < READ_MS)) return;
     this.shown = minutes;
+    this.shownAt = now;
     this.stamp.textContent = this.hovered === null ? '' : `at ${clockText(60 * minutes)}`;
     this.lines.forEach((line, k) => (this.values[k].textContent = numberText(valueAt(line, minutes))));
   }
@@ -305,7 +310,7 @@ export class Chart {
   private placeCursor(): void {
     if (!this.plotted) return;
     const x = this.plotted.valToPos(this.clock.time / 60, 'x');
-    const inside = x >= -0.5 && x <= this.plotted.over.clientWidth + 0.5;
+    const inside = x >= -0.5 && x <= this.plotted.bbox.width / uPlot.pxRatio + 0.5;
     this.cursor.style.visibility = inside ? 'visible' : 'hidden';
     this.cursor.style.transform = `translateX(${x.toFixed(1)}px)`;
   }

@@ -35,6 +35,8 @@ export class Stage {
   /** Pixels per CSS pixel while things move; those that stand still are drawn in full. */
   private movingRatio: number;
   private lastDrawn = 0;
+  private moving = false;
+  private quietTicks = 0;
   private watcher: ResizeObserver;
   /** Called after each picture. */
   onDrawn: () => void = () => undefined;
@@ -65,11 +67,14 @@ export class Stage {
     this.fly(now);
     this.controls.update();
     if (this.stale) {
-      const still = now - this.lastDrawn > STILL_MS;
-      if (!still) this.setRatio(this.movingRatio);
+      // A single change is drawn in full, what goes on moving in fewer pixels if need be.
+      if (this.moving) this.setRatio(this.movingRatio);
+      this.moving = true;
+      this.quietTicks = 0;
       this.draw(seconds);
       this.lastDrawn = now;
-    } else if (this.ratio !== this.fullRatio && now - this.lastDrawn > STILL_MS) {
+    } else if (this.moving && ++this.quietTicks >= 3 && now - this.lastDrawn > STILL_MS) {
+      this.moving = false;
       this.setRatio(this.fullRatio);
     }
   }
