@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 constexpr std::size_t log_bytes = 64 * 1024;
+constexpr int deepest_json = 32;
 
 /// Text of a file that may be missing; what is wrong with it becomes a note.
 std::string optional_text(const fs::path& file, std::vector<std::string>& notes) {
@@ -27,6 +29,26 @@ std::string optional_text(const fs::path& file, std::vector<std::string>& notes)
     notes.push_back(e.what());
     return {};
   }
+}
+
+/// JSON from a folder; discarded if it is none, or nested deeper than anything that carus writes: what walks it
+/// recurses.
+Json parse_shallow(const std::string& text) {
+  int depth = 0, deepest = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      if (c == '"') in_string = false;
+      continue;
+    }
+    if (c == '"') in_string = true;
+    if (c == '{' || c == '[') deepest = std::max(deepest, ++depth);
+    if (c == '}' || c == ']') --depth;
+  }
+  if (deepest > deepest_json) return Json(Json::value_t::discarded);
+  return Json::parse(text, nullptr, false);
 }
 
 void require_results_folder(const fs::path& path) {
@@ -89,7 +111,7 @@ void read_summary(Folder& f) {
     return;
   }
   const auto text = optional_text(file, f.notes);
-  const auto j = Json::parse(text, nullptr, false);
+  const auto j = parse_shallow(text);
   f.status = RunStatus::failed;
   if (!j.is_object()) {
     f.notes.push_back(fmt::format("{}: is damaged or cut off; run the birth again", file.string()));
@@ -108,7 +130,7 @@ void read_events(Folder& f) {
   for (std::size_t begin = 0, end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) {
     ++line;
     auto one = text.substr(begin, end - begin);
-    const auto j = Json::parse(one, nullptr, false);
+    const auto j = parse_shallow(one);
     const bool fits = j.is_object() && j.contains("time_s") && j["time_s"].is_number() && j.contains("event") &&
                       j["event"].is_string();
     if (fits) {

@@ -18,6 +18,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <new>
 #include <optional>
 #include <string_view>
 
@@ -49,11 +50,15 @@ class VtuFile {
     reader->SetParserErrorObserver(on_error);
     if (!reader->CanReadFile(file_.c_str())) refuse("is no VTU file of an unstructured grid");
     reader->SetFileName(file_.c_str());
-    reader->UpdateInformation();
-    if (broken) refuse("is damaged");
-    select(*reader->GetPointDataArraySelection(), point_arrays);
-    select(*reader->GetCellDataArraySelection(), cell_arrays);
-    reader->Update();
+    try {
+      reader->UpdateInformation();
+      if (broken) refuse("is damaged");
+      select(*reader->GetPointDataArraySelection(), point_arrays);
+      select(*reader->GetCellDataArraySelection(), cell_arrays);
+      reader->Update();
+    } catch (const std::bad_alloc&) {
+      refuse("announces more than memory holds: is damaged");
+    }
     grid_ = reader->GetOutput();
     if (broken || grid_ == nullptr || reader->GetErrorCode() != 0) refuse("is damaged");
     if (grid_->GetPoints() == nullptr || grid_->GetNumberOfPoints() == 0) refuse("has no points");

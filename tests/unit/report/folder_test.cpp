@@ -107,5 +107,15 @@ TEST_F(ResultsFolder, ASummaryOfAnotherFormIsNotTrusted) {
   EXPECT_NE(manifest_of(runs, {}).json, "");
 }
 
+TEST_F(ResultsFolder, JsonNestedWithoutEndIsNoneOfOurs) {
+  const std::size_t deep = 1000000;
+  test::set_text(dir / "summary.json", "{\"a\":" + std::string(deep, '[') + std::string(deep, ']') + "}");
+  test::set_text(dir / "events.jsonl", "{\"time_s\":1,\"event\":\"a]}\\\"\",\"x\":" + std::string(deep, '[') +
+                                           std::string(deep, ']') + "}\n{\"time_s\": 1, \"event\": \"[[[[\"}\n");
+  const auto f = read_folder(dir);
+  EXPECT_THAT(f.notes, Contains(HasSubstr("summary.json: is damaged")));
+  EXPECT_EQ(f.events.size(), 1u) << "brackets in a text are no nesting";
+}
+
 }  // namespace
 }  // namespace carus::report
