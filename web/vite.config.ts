@@ -1,6 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Builds dist/viewer.html: the page with all of its scripts, styles and the worker inside, so that it opens from disk.
+import { readFileSync } from 'node:fs';
 import { defineConfig, type Plugin } from 'vite';
+
+/** What is built in, and whose licence asks for its notice in every copy. */
+const BUILT_IN = ['three', 'uplot'];
+
+function notices(): string {
+  const texts = BUILT_IN.map((name) => {
+    const { version, license } = JSON.parse(readFileSync(`node_modules/${name}/package.json`, 'utf8')) as {
+      version: string;
+      license: string;
+    };
+    return `${name} ${version} (${license})\n\n${readFileSync(`node_modules/${name}/LICENSE`, 'utf8').trim()}`;
+  });
+  const text = texts.join('\n\n');
+  if (text.includes('--')) throw new Error('a licence text would end the comment that it stands in');
+  return `<!--\nCarus viewer: Apache-2.0. It contains:\n\n${text}\n-->`;
+}
 
 /** Moves every emitted script and style sheet into the page and drops the files. */
 function onePage(): Plugin {
@@ -27,6 +44,7 @@ function onePage(): Plugin {
         }
         delete bundle[name];
       }
+      html = html.replace('</html>', () => `${notices()}\n</html>`);
       if (html.split('<!--CARUS-DATA-->').length !== 2) throw new Error('the page must hold the place of the data exactly once');
       page.fileName = 'viewer.html';
       page.source = html;

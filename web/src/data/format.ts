@@ -183,6 +183,13 @@ export function parseManifest(json: string): Manifest {
   };
 }
 
+/** Derived fields have no chunks; a scale that is none becomes 0…1, so that nothing is divided by zero. */
+function completeField(field: Field): Field {
+  const [low, high] = list<number>(field.scale);
+  const scale: [number, number] = Number.isFinite(low) && Number.isFinite(high) && high > low ? [low, high] : [0, 1];
+  return { ...field, label: text(field.label) || field.name, unit: text(field.unit), scale, chunks: list(field.chunks) };
+}
+
 function completeRun(run: Loose): RunInfo {
   const notes = list<unknown>(run.notes).map(text);
   const verdict = isObject(run.verdict) ? run.verdict : {};
@@ -221,6 +228,12 @@ function completeRun(run: Loose): RunInfo {
       references: list(plot.references),
     })),
     mesh: mesh && { ...mesh, regions: list(mesh.regions), landmarks: list(mesh.landmarks) },
-    frames: mesh && frames && { ...frames, fields: list(frames.fields) },
+    frames: mesh &&
+      frames && {
+        ...frames,
+        fields: list<Field>(frames.fields)
+          .filter(isObject)
+          .map((field) => completeField(field as unknown as Field)),
+      },
   };
 }
