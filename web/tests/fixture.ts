@@ -229,10 +229,7 @@ export function makeRun(blobs: Blobs, options: Options = {}): RunInfo {
       ],
       corners: pack(blobs, differences(tets.flat(), 4)),
       region: pack(blobs, differences(region)),
-      rest: pack(
-        blobs,
-        [0, 1, 2].flatMap((axis) => differences(rest.slice(axis * N, (axis + 1) * N))),
-      ),
+      rest: pack(blobs, differences(rest)),
       landmarks: [{ name: 'head_centre', label: 'Centre of the skull', position: [0, 0, 0] }],
     },
     frames: {

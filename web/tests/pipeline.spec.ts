@@ -34,6 +34,17 @@ test.describe('carus run, report, serve', () => {
     await open(page, `file://${file}`);
     await expect(page.locator('.notice')).toHaveCount(0);
     await expect(page.locator('.verdict-table tbody tr').first()).toBeVisible();
+    // At the start the trail begins in the middle of the skull: shapes, landmarks and curves are of one frame.
+    await page.locator('[data-cut=sagittal]').click();
+    await page.waitForTimeout(700);
+    const first = await pixels(page, picture(page));
+    const skull = find(first, (r, g, b) => Math.abs(r - 192) < 4 && Math.abs(g - 201) < 4 && Math.abs(b - 214) < 4);
+    const trail = find(first, (r, g, b) => r > 190 && g < 120 && b < 70);
+    expect(skull.count).toBeGreaterThan(500);
+    expect(Math.abs(trail.top + 6 - skull.y)).toBeLessThan(0.2 * (skull.bottom - skull.top));
+    expect(trail.left).toBeGreaterThan(skull.left);
+    expect(trail.left).toBeLessThan(skull.right);
+    await page.locator('[data-cut=none]').click();
     await plain(page);
     const start = await pixels(page, picture(page));
     await page.keyboard.press('End');

@@ -14,9 +14,9 @@ export function fromPlanes(bytes: Uint8Array, n: number, planes: number): Int32A
   return out;
 }
 
-/** Turns differences to the value `stride` places before into values, in place, within [from, to). */
-export function runningSum(values: Int32Array, stride: number, from = 0, to = values.length): void {
-  for (let i = from + stride; i < to; i++) values[i] += values[i - stride];
+/** Turns differences to the value `stride` places before into values, in place. */
+export function runningSum(values: Int32Array, stride: number): void {
+  for (let i = stride; i < values.length; i++) values[i] += values[i - stride];
 }
 
 /** Turns the differences of a chunk of `count` frames of `n` integers into values, in place. `base`: what frame 0 is relative to. */

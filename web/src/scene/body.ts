@@ -15,6 +15,9 @@ export interface OrganEntry {
   capColour: Color;
 }
 
+/** Bones are rigid: they keep their colour when values are shown, and give the rest its place. */
+const keepsColour = (region: Region): boolean => region.kind === 'bone';
+
 export class Body {
   readonly object = new Group();
   readonly entries: OrganEntry[] = [];
@@ -55,7 +58,7 @@ export class Body {
       if (ghostColour) {
         organ.material.uniforms.mapped = { value: 0 };
         organ.makeGhost();
-      }
+      } else if (keepsColour(region)) organ.material.uniforms.mapped = { value: 0 };
       const entry = { region, organ, look, capColour: new Color(look.colour) };
       this.entries.push(entry);
       this.byRegion.set(region.id, entry);
@@ -100,15 +103,20 @@ export class Body {
     return this.valuesCurrent;
   }
 
+  private whole: (region: Region) => boolean = () => false;
+  private capColourOf = (id: number): Color | null => {
+    const entry = this.byRegion.get(id)!;
+    return entry.organ.object.visible && !this.whole(entry.region) ? entry.capColour : null;
+  };
+  private plainOf = (id: number): boolean => keepsColour(this.byRegion.get(id)!.region);
+
   /** Cuts by `plane` (null: not at all) the organs for which `whole` is false. */
   cut(plane: CutPlane | null, whole: (region: Region) => boolean): void {
     this.caps.object.visible = plane !== null && this.ghostColour === null;
     for (const { organ, region } of this.entries) organ.clipped = plane !== null && !whole(region);
     if (!plane || this.ghostColour) return;
-    this.caps.update(this.nodes, this.valuesCurrent ? this.values : null, plane, (id) => {
-      const entry = this.byRegion.get(id)!;
-      return entry.organ.object.visible && !whole(entry.region) ? entry.capColour : null;
-    });
+    this.whole = whole;
+    this.caps.update(this.nodes, this.valuesCurrent ? this.values : null, plane, this.capColourOf, this.plainOf);
   }
 
   /** The space that the organs take at rest and at the first and last frames that are decoded. */

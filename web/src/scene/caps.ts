@@ -31,6 +31,9 @@ export interface CutPlane {
   offset: number;
 }
 
+/** The shader's sign for a vertex that keeps its organ's colour whatever is mapped. */
+const NO_VALUE = -1e9;
+
 export class Caps {
   readonly object = new Group();
   private material: ShaderMaterial;
@@ -44,6 +47,7 @@ export class Caps {
   private lines: LineSegments;
   /** Vertices of the caps now. */
   count = 0;
+  private plain = false;
   /** The tet that each cap triangle was cut from. */
   private owner = new Uint32Array(0);
 
@@ -84,8 +88,14 @@ export class Caps {
     this.outline.setAttribute('position', new BufferAttribute(bigger, 3).setUsage(DynamicDrawUsage));
   }
 
-  /** Cuts the regions for which `colour` gives one. `values`: nodal values for the colour scale, or null. */
-  update(nodes: Float32Array, values: Float32Array | null, plane: CutPlane, colour: (region: number) => Color | null): void {
+  /** Cuts the regions for which `colour` gives one. `values`: nodal values for the colour scale, or null; those of `plain` keep their colour. */
+  update(
+    nodes: Float32Array,
+    values: Float32Array | null,
+    plane: CutPlane,
+    colour: (region: number) => Color | null,
+    plain: (region: number) => boolean,
+  ): void {
     const d = this.distance;
     for (let i = 0, k = 0; i < d.length; i++, k += 3)
       d[i] = plane.x * nodes[k] + plane.y * nodes[k + 1] + plane.z * nodes[k + 2] - plane.offset;
@@ -94,6 +104,7 @@ export class Caps {
     for (let g = 0; g < grouped.regions.length; g++) {
       const c = colour(grouped.regions[g]);
       if (!c) continue;
+      this.plain = plain(grouped.regions[g]);
       for (let at = grouped.start[g]; at < grouped.start[g + 1]; at++) {
         const t = grouped.tets[at];
         const k = 4 * t;
@@ -162,7 +173,7 @@ export class Caps {
     this.tint[at] = colour.r;
     this.tint[at + 1] = colour.g;
     this.tint[at + 2] = colour.b;
-    this.scalar[this.count] = values ? values[i] + f * (values[j] - values[i]) : 0;
+    this.scalar[this.count] = this.plain ? NO_VALUE : values ? values[i] + f * (values[j] - values[i]) : 0;
     this.count++;
   }
 

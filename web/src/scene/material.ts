@@ -81,7 +81,7 @@ varying float vScalar;
 void main() {
   float t = (vScalar - range.x) / (range.y - range.x);
   vec3 value = texture2D(scale, vec2(clamp(t, 0.002, 0.998), 0.5)).rgb;
-  gl_FragColor = vec4(mix(vTint * 0.93, value, mapped), 1.0);
+  gl_FragColor = vec4(mix(vTint * 0.93, value, vScalar < -1.0e8 ? 0.0 : mapped), 1.0);
   #include <colorspace_fragment>
 }`;
 

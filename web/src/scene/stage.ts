@@ -92,8 +92,8 @@ export class Stage {
     this.render();
     // Where pictures come slowly (software rendering), fewer pixels make it usable.
     this.slow = seconds > 0.07 ? this.slow + 1 : Math.max(0, this.slow - 1);
-    if (this.slow > 8 && this.movingRatio > 0.6) {
-      this.movingRatio = this.movingRatio > 1 ? 1 : this.movingRatio - 0.2;
+    if (this.slow > 8 && this.movingRatio > 0.5) {
+      this.movingRatio = this.movingRatio > 1 ? 1 : Math.max(0.5, this.movingRatio - 0.25);
       this.slow = 0;
     }
   }

@@ -91,5 +91,6 @@ export function provenanceSection(runs: Run[], manifest: Manifest): HTMLElement 
       { class: 'made' },
       `Made by carus ${generator.version} ${generator.commit && `(${generator.commit})`} ${manifest.created}`.trim(),
     ),
+    h('p', { class: 'made' }, 'With three.js and uPlot, both under the MIT licence: their notices are at the end of this file.'),
   );
 }
