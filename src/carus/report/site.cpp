@@ -62,8 +62,10 @@ void Site::rebuild() {
   auto m = manifest_of(runs_, options_);
   blobs_before_ = std::move(blobs_);
   blobs_.clear();
-  for (auto& blob : m.blobs)
-    blobs_.emplace(content_hash(blob), std::make_shared<const std::string>(std::move(blob.bytes)));
+  for (auto& blob : m.blobs) {
+    auto name = content_hash(blob);
+    blobs_.emplace(std::move(name), std::make_shared<const std::string>(std::move(blob.bytes)));
+  }
   manifest_ = std::make_shared<const std::string>(std::move(m.json));
   page_ = std::make_shared<const std::string>(page(viewer_, *manifest_, {}));
 }

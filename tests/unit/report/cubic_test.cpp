@@ -23,10 +23,14 @@ TEST(MonotoneCubic, IsExactOnALine) {
 
 TEST(MonotoneCubic, StaysOutsideItsPointsWhatItWasAtTheEnds) {
   const MonotoneCubic c({1, 2, 4}, {0, 1, 5});
-  EXPECT_EQ(c.value(-3), 0), EXPECT_EQ(c.value(9), 5);
-  EXPECT_EQ(c.slope(-3), 0), EXPECT_EQ(c.slope(9), 0);
+  EXPECT_EQ(c.value(-3), 0);
+  EXPECT_EQ(c.value(9), 5);
+  EXPECT_EQ(c.slope(-3), 0);
+  EXPECT_EQ(c.slope(9), 0);
   const MonotoneCubic one({1}, {7});
-  EXPECT_EQ(one.value(0), 7), EXPECT_EQ(one.slope(1), 0), EXPECT_EQ(one.steepest().value, 0);
+  EXPECT_EQ(one.value(0), 7);
+  EXPECT_EQ(one.slope(1), 0);
+  EXPECT_EQ(one.steepest().value, 0);
 }
 
 /// Against t³/3 + t: the error falls with the square of the interval at least (Fritsch and Butland's slopes are second
@@ -61,7 +65,8 @@ TEST(MonotoneCubic, NeverLeavesTheRangeOfItsTwoPoints) {
     const auto [low, high] = std::minmax(y[i], y[i + 1]);
     for (int k = 0; k <= 40; ++k) {
       const double v = c.value(t[i] + (t[i + 1] - t[i]) * k / 40);
-      EXPECT_GE(v, low - 1e-12), EXPECT_LE(v, high + 1e-12);
+      EXPECT_GE(v, low - 1e-12);
+      EXPECT_LE(v, high + 1e-12);
     }
     EXPECT_NEAR(c.value(t[i]), y[i], 1e-12);
   }
@@ -83,7 +88,8 @@ TEST(MonotoneCubic, DerivativesAndExtremesAgreeWithTheValues) {
       steepest = std::max(steepest, std::abs(c.slope(s))), curved = std::max(curved, std::abs(c.curvature(s)));
     }
   }
-  EXPECT_NEAR(std::abs(c.steepest().value), steepest, 1e-3 * steepest);
+  // The scan misses the ends of the intervals by 1/200 of them.
+  EXPECT_NEAR(std::abs(c.steepest().value), steepest, 5e-3 * steepest);
   EXPECT_GE(std::abs(c.steepest().value), steepest);
   EXPECT_NEAR(std::abs(c.most_curved().value), curved, 2e-2 * curved);
   EXPECT_GE(std::abs(c.most_curved().value), curved);

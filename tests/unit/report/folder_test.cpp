@@ -94,7 +94,7 @@ TEST_F(ResultsFolder, WhatElseIsSpoiltBecomesANote) {
   EXPECT_LT(f.log.size(), 70000u);
   EXPECT_THAT(f.log, testing::EndsWith("last\n"));
   // And a report of it is still made.
-  const std::vector<Run> runs = {read_run(dir)};
+  const std::vector<report::Run> runs = {read_run(dir)};
   EXPECT_THAT(runs[0].verdict.line, testing::StartsWith("NOT JUDGED"));
   EXPECT_NE(manifest_of(runs, {}).json, "");
 }
@@ -102,7 +102,7 @@ TEST_F(ResultsFolder, WhatElseIsSpoiltBecomesANote) {
 TEST_F(ResultsFolder, ASummaryOfAnotherFormIsNotTrusted) {
   test::set_text(dir / "summary.json",
                  R"({"outcome": 7, "numerics": [1], "declared": "x", "calibrated": [1, {"key": 2}], "wall_s": null})");
-  const std::vector<Run> runs = {read_run(dir)};
+  const std::vector<report::Run> runs = {read_run(dir)};
   EXPECT_EQ(runs[0].folder.status, RunStatus::failed);
   EXPECT_NE(manifest_of(runs, {}).json, "");
 }

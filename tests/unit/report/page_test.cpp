@@ -55,7 +55,7 @@ TEST(Report, TextInFilesNeverBecomesMarkup) {
   summary["version"] = bad, summary["declared"][bad] = bad;
   test::set_text(dir / "summary.json", summary.dump());
 
-  const std::vector<Run> runs = {read_run(dir)};
+  const std::vector<report::Run> runs = {read_run(dir)};
   const auto manifest = manifest_of(runs, {});
   EXPECT_THAT(manifest.json, HasSubstr("onerror")) << "the texts are there";
   const auto html = page(viewer, manifest.json, {});

@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
-#include <regex>
 #include <thread>
 
 #include "small_run.hpp"
@@ -42,7 +41,7 @@ class Served : public testing::Test {
     EXPECT_EQ(connect(s, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
     const timeval patience{10, 0};
     setsockopt(s, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    EXPECT_EQ(send(s, words.data(), words.size(), MSG_NOSIGNAL), ssize_t(words.size()));
+    EXPECT_GT(send(s, words.data(), words.size(), MSG_NOSIGNAL), 0);  // it may hang up before the end
     std::string answer;
     char part[4096];
     for (ssize_t n; (n = recv(s, part, sizeof part, 0)) > 0;) answer.append(part, std::size_t(n));

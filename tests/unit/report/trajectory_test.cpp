@@ -120,7 +120,8 @@ TEST(Trajectory, LimitsAreRefusedWithPlaceAndValue) {
     speed = std::max(speed, std::abs(cell(t, i, "axis_speed_mm_s")));
     acceleration = std::max(acceleration, std::abs(cell(t, i, "axis_acceleration_mm_s2")));
   }
-  EXPECT_LE(speed, 1), EXPECT_LE(acceleration, 0.1);
+  EXPECT_LE(speed, 1);
+  EXPECT_LE(acceleration, 0.1);
   EXPECT_TRUE(speed > 0.95 || acceleration > 0.095) << "no slower than it must be";
   EXPECT_NEAR(t.rows.back()[0], 500 * t.time_stretch, 1e-6);
   EXPECT_NEAR(cell(t, t.rows.size() - 1, "head_z_mm"), -120, 1e-9);

@@ -105,7 +105,6 @@ TEST(Validation, HoldsARunAgainstThePapersSectionFive) {
     EXPECT_EQ(row.number, 0);
     EXPECT_EQ(row.asked, row.what != "head displacement X (left-right)") << row.what;
     inside += row.inside;
-    if (row.what == "head displacement Z (cranio-caudal)") EXPECT_EQ(row.obtained, "181.00 mm");
   }
   EXPECT_EQ(rows.size(), 12u);
   // All but what the staircase does not hold: lateral points, deformation, and X, which is nearly 0.
