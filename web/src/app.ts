@@ -9,7 +9,7 @@ import { captionOf, compose, Recorder } from './scene/record';
 import { download, fileName, h, iconButton } from './ui/dom';
 import { comparisonSection, provenanceSection } from './ui/facts';
 import { Keyboard } from './ui/keyboard';
-import { MeasureLabel, ScaleLegend, Triad } from './ui/legend';
+import { MeasureLabel, Moment, ScaleLegend, Triad } from './ui/legend';
 import { OrganPanel } from './ui/organs';
 import { Theme } from './ui/theme';
 import { clockText, numberText, words } from './ui/text';
@@ -32,6 +32,7 @@ export class App {
   private legend = new ScaleLegend();
   private triad = new Triad();
   private measureLabel = new MeasureLabel();
+  private moment = new Moment();
   private status = h('div', { class: 'decode-status', role: 'status' });
   private notices = h('div', { class: 'notices', role: 'status' });
   private picture = h('div', { class: 'picture' });
@@ -185,7 +186,7 @@ export class App {
       measure: (on) => this.measure(on),
     });
     this.stageSection.prepend(this.toolbar.element);
-    this.picture.append(this.legend.element, this.triad.element, this.measureLabel.element);
+    this.picture.append(this.moment.element, this.legend.element, this.triad.element, this.measureLabel.element);
     viewer.stage.onDrawn = () => {
       this.triad.follow(viewer);
       this.measureLabel.follow(viewer);
@@ -220,6 +221,7 @@ export class App {
     const viewer = this.viewer;
     if (viewer) {
       viewer.tick(now, seconds);
+      this.moment.follow(viewer.body.run.info, this.clock.time);
       const text = this.statusText(viewer);
       if (this.status.textContent !== text) this.status.textContent = text;
       if (this.recorder.recording) {

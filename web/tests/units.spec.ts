@@ -8,6 +8,7 @@ import { fromPlanes, runningSum, undoTimeDifferences } from '../src/data/codec';
 import { parseManifest } from '../src/data/format';
 import { groupByRegion, surfaceOf } from '../src/data/surface';
 import { colourAt } from '../src/scene/colormap';
+import { momentText } from '../src/ui/legend';
 import { clockText, numberText } from '../src/ui/text';
 import { Blobs, box, makeManifest, makeRun, timeDifferences, toPlanes } from './fixture';
 
@@ -138,6 +139,18 @@ test('numbers and times are written as people read them', () => {
     '–',
   ]);
   expect(clockText(2051.1)).toBe('34:11');
+});
+
+test('the moment is told in words', () => {
+  const run = makeRun(new Blobs());
+  expect([0, 60, 130, 310, 595].map((t) => momentText(run, t))).toEqual([
+    'Before the first contraction',
+    'Contraction 1',
+    'Rest after contraction 1',
+    'Contraction 2 · crowning',
+    'Rest after contraction 3 · birth',
+  ]);
+  expect(momentText({ ...run, contractions: [], events: [] }, 5)).toBe('');
 });
 
 test('manifests: foreign and damaged ones are refused with a reason, missing parts completed', () => {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // On the picture: the colour scale with its unit, the directions of the axes, the length measured.
 import { Vector3 } from 'three';
-import type { Field } from '../data/format';
+import type { BirthEvent, Field, RunInfo } from '../data/format';
 import { cssGradient } from '../scene/colormap';
 import { AXIS_COLOURS } from '../scene/overlays';
 import type { Viewer } from '../viewer';
 import { h, svg } from './dom';
-import { numberText, withUnit } from './text';
+import { numberText, withUnit, words } from './text';
 
 /** Ticks of a scale: five, at even places. */
 export function scaleTicks(field: Field): { at: number; label: string }[] {
@@ -85,6 +85,32 @@ export class Triad {
       group.setAttribute('opacity', seen ? '1' : '0.4');
     });
   }
+}
+
+/** Which contraction or rest it is, and what has happened last. */
+export class Moment {
+  readonly element = h('div', { class: 'moment' });
+  private shown = '';
+
+  follow(run: RunInfo, time: number): void {
+    const text = momentText(run, time);
+    if (text === this.shown) return;
+    this.shown = text;
+    this.element.textContent = text;
+  }
+}
+
+export function momentText(run: RunInfo, time: number): string {
+  const n = run.contractions.filter((c) => c.start_s <= time).length;
+  const last = run.contractions[n - 1];
+  const parts: string[] = [];
+  if (run.contractions.length)
+    parts.push(!last ? 'Before the first contraction' : time <= last.end_s ? `Contraction ${n}` : `Rest after contraction ${n}`);
+  let before: BirthEvent | null = null;
+  for (const event of run.events)
+    if (event.event !== 'contraction' && event.time_s <= time && (!before || event.time_s >= before.time_s)) before = event;
+  if (before) parts.push(words(before.event));
+  return parts.join(' · ');
 }
 
 export class MeasureLabel {
