@@ -12,6 +12,7 @@
 namespace carus::report {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 labour::Contractions three() {
@@ -195,6 +196,15 @@ TEST(Trajectory, OfARunAgreesWithItsCurvesInBothFiles) {
   EXPECT_EQ(j["columns"].size(), j["rows"][0].size());
   EXPECT_NEAR(j["rows"][60][4].get<double>(), cell(t, 60, "head_z_mm"), 1e-6);
   EXPECT_EQ(j["units"]["length"], "mm");
+  const auto schema =
+      nlohmann::json::parse(test::text_of(fs::path(CARUS_SOURCE_DIR) / "schema" / "trajectory.schema.json"));
+  const auto fits = [&](const nlohmann::json& value, const nlohmann::json& rule) {
+    for (const auto& key : rule["required"]) EXPECT_TRUE(value.contains(key.get<std::string>())) << key;
+    for (const auto& [key, unused] : value.items()) EXPECT_TRUE(rule["properties"].contains(key)) << key;
+  };
+  fits(j, schema);
+  for (const char* part : {"source", "frame", "interpolation", "axis", "limits", "imposed"})
+    fits(j[part], schema["properties"][part]);
 }
 
 }  // namespace
