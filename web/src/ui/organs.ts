@@ -112,6 +112,8 @@ export class OrganPanel {
       look.opacity = Number(opacity.value);
       this.viewer.applyLooks();
     });
-    return { element: h('li', {}, h('label', {}, seen, region.label), colour, opacity), sync };
+    return { element: h('li', {}, h('label', {}, seen, capital(region.label)), colour, opacity), sync };
   }
 }
+
+const capital = (text: string): string => text.charAt(0).toUpperCase() + text.slice(1);
