@@ -216,24 +216,28 @@ export class Viewer {
 
   private whole = (region: Region): boolean => this.choices.cut?.wholeFetus === true && region.kind === 'fetus';
 
-  /** Brings the scene to the clock's time if anything changed, and draws. */
-  tick(now: number, seconds: number): void {
+  /** Brings the scene to the clock's time and to what is chosen, if anything changed. */
+  private update(): void {
+    if (!this.moved) return;
     const { time } = this.clock;
-    this.load();
-    if (this.moved) {
-      this.moved = false;
-      const plane = this.plane();
-      if (plane) this.shared.clip.value.set(plane.x, plane.y, plane.z, plane.offset);
-      this.body.moveTo(time, this.field);
-      this.body.cut(plane, this.whole);
-      this.ghost?.moveTo(time, undefined);
-      if (this.trail) {
-        this.trail.moveTo(time);
-        this.trail.show(this.choices.trail, this.choices.axes);
-      }
-      this.measure.update(this.body.nodes);
-      this.stage.redraw();
+    this.moved = false;
+    const plane = this.plane();
+    if (plane) this.shared.clip.value.set(plane.x, plane.y, plane.z, plane.offset);
+    this.body.moveTo(time, this.field);
+    this.body.cut(plane, this.whole);
+    this.ghost?.moveTo(time, undefined);
+    if (this.trail) {
+      this.trail.moveTo(time);
+      this.trail.show(this.choices.trail, this.choices.axes);
     }
+    this.measure.update(this.body.nodes);
+    this.stage.redraw();
+  }
+
+  /** Loads what is missing, updates the scene and draws. */
+  tick(now: number, seconds: number): void {
+    this.load();
+    this.update();
     this.trail?.setPixelRatio(this.stage.pixelRatio);
     this.measure.setPixelRatio(this.stage.pixelRatio);
     this.stage.tick(now, seconds);
@@ -253,6 +257,7 @@ export class Viewer {
 
   /** Picks at a place of the picture, 0…1 from its upper left. */
   pickAt(x: number, y: number): void {
+    this.update();
     const { camera } = this.stage;
     camera.updateMatrixWorld();
     const plane = this.plane();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page around the picture: verdict, texts, keyboard, colours, and what is said when something is missing.
 import { expect, test, type Page } from '@playwright/test';
+import type { Manifest } from '../src/data/format';
 import { Blobs, makeManifest, makeRun, MARKUP, onDisk, report, scripts, spliced } from './fixture';
 import { goTo, open, picture, watch } from './page';
 
@@ -207,13 +208,13 @@ test('served: pieces are fetched when needed, and a birth in progress is followe
   manifest.runs[0].status = 'in_progress';
   manifest.live = { src: 'manifest.json', every_s: 1 };
   const empty = new Blobs();
+  let grown: Manifest = manifest;
   const asked: string[] = [];
   await page.route('http://carus.test/**', async (route) => {
     const path = new URL(route.request().url()).pathname;
     asked.push(path);
     if (path === '/') await route.fulfill({ contentType: 'text/html', body: spliced(scripts(manifest, empty)) });
-    else if (path === '/manifest.json')
-      await route.fulfill({ json: { ...manifest, live: null, runs: [{ ...manifest.runs[0], status: 'finished' }] } });
+    else if (path === '/manifest.json') await route.fulfill({ json: grown });
     else if (path.startsWith('/blob/'))
       await route.fulfill({ contentType: 'application/octet-stream', body: blobs.data[Number(path.slice(6))] });
     else await route.fulfill({ status: 404 });
@@ -226,11 +227,19 @@ test('served: pieces are fetched when needed, and a birth in progress is followe
   await page.getByLabel('Colour by').selectOption('stretch');
   await expect.poll(() => asked).toContain(`/blob/${field}`);
   await goTo(page, 300);
-  await expect(page.locator('.live')).toContainText('The run has ended');
+  await expect(page.locator('.live')).toContainText('In progress: 10 min of labour, 13 frames.');
+  grown = { ...manifest, runs: [{ ...manifest.runs[0], duration_s: 660 }] };
+  await expect(page.locator('.live')).toContainText('11 min of labour, 13 frames by now');
   await page.getByRole('button', { name: 'Show it' }).click();
   await expect(page.locator('#app')).toHaveAttribute('data-decoded', 'all');
   // Time and colours are those of before.
-  await expect(page.locator('.time-readout')).toHaveText('5:00 / 10:00');
+  await expect(page.locator('.time-readout')).toHaveText('5:00 / 11:00');
   await expect(page.getByLabel('Colour by')).toHaveValue('stretch');
+  // Followed, it goes to the newest moment by itself, until the run has ended.
+  await page.getByLabel('show what is new by itself').check();
+  grown = { ...manifest, runs: [{ ...manifest.runs[0], duration_s: 720 }] };
+  await expect(page.locator('.time-readout')).toHaveText('12:00 / 12:00');
+  grown = { ...manifest, live: null, runs: [{ ...manifest.runs[0], status: 'finished', duration_s: 720 }] };
   await expect(page.locator('.live')).toHaveCount(0);
+  await expect(page.locator('.notices')).not.toContainText('still in progress');
 });

@@ -14,7 +14,7 @@ export class CurvesPanel {
 
   constructor(runs: Run[], clock: Clock) {
     const window = new Window(Math.max(clock.duration / 60, 1e-3));
-    this.charts = runs[0].info.plots.map((plot) => new Chart(plot, runs, clock, window));
+    this.charts = (runs.find((run) => run.info.plots.length) ?? runs[0]).info.plots.map((plot) => new Chart(plot, runs, clock, window));
     const grid = h('div', { class: 'charts' }, ...this.charts.map((chart) => chart.element));
     this.element = h(
       'section',

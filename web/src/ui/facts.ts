@@ -31,7 +31,11 @@ export function comparisonSection(manifest: Manifest): HTMLElement | null {
     'section',
     { class: 'comparison', 'aria-labelledby': 'comparison-title' },
     h('h2', { id: 'comparison-title' }, 'Comparison'),
-    h('div', { class: 'scrolls', tabindex: 0 }, h('table', {}, h('thead', {}, h('tr', {}, ...heads)), h('tbody', {}, ...rows))),
+    h(
+      'div',
+      { class: 'scrolls', role: 'region', 'aria-label': 'Comparison', tabindex: 0 },
+      h('table', {}, h('thead', {}, h('tr', {}, ...heads)), h('tbody', {}, ...rows)),
+    ),
   );
 }
 

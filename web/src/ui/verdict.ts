@@ -28,7 +28,7 @@ const titleOf = (row: VerdictRow): string =>
       : 'Bands';
 
 export function verdictSection(runs: Run[]): HTMLElement {
-  const first = runs[0].info;
+  const first = (runs.find((run) => run.info.verdict.rows.length) ?? runs[0]).info;
   const groups = new Map<string, { title: string; key: string; rows: VerdictRow[] }>();
   for (const row of first.verdict.rows) {
     const key = `${row.group}|${row.number ?? ''}`;
@@ -44,7 +44,7 @@ export function verdictSection(runs: Run[]): HTMLElement {
     h('summary', {}, 'Expected and obtained, row by row'),
     h(
       'div',
-      { class: 'window', tabindex: 0, 'aria-label': 'Verdict, row by row' },
+      { class: 'window', role: 'region', tabindex: 0, 'aria-label': 'Verdict, row by row' },
       h('div', { class: 'columns' }, ...[...groups.values()].map((group) => table(group, runs))),
     ),
   );
