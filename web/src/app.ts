@@ -73,7 +73,8 @@ export class App {
     const { manifest, runs } = this;
     for (const run of runs) for (const note of run.info.notes) this.tell(note, run);
     for (const run of runs) {
-      if (run.info.status === 'in_progress') this.tell('This birth is still in progress: no summary yet.', run);
+      const said = (what: string) => run.info.notes.some((note) => note.includes(what));
+      if (run.info.status === 'in_progress' && !said('in progress')) this.tell('This birth is still in progress: no summary yet.', run);
       if (run.info.status === 'failed') this.tell('This run has failed; what it reached is shown.', run);
     }
     const opened = await Promise.allSettled(runs.map((run) => run.openCurves()));

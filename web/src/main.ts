@@ -88,11 +88,13 @@ let app: App | null = null;
 let live: Live | null = null;
 
 async function show(manifest: Manifest): Promise<void> {
+  const scrolled = window.scrollY;
   app?.dispose();
   live?.stop();
   live = manifest.live ? new Live(manifest, (next) => void show(next)) : null;
   app = new App(host, manifest, choices, live?.banner ?? null);
   await app.start();
+  if (scrolled) window.scrollTo(0, scrolled);
 }
 
 try {
