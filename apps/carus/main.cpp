@@ -30,13 +30,16 @@ int main(int argc, char** argv) {
   CLI::App app("carus: computes a childbirth by finite elements. Not for clinical use.", "carus");
   app.set_version_flag("--version", fmt::format("carus {} ({})", CARUS_VERSION, CARUS_COMMIT));
   app.require_subcommand(1);
-  app.footer("Exit status: 0 done, 2 bad input, 3 numerical failure, 4 interrupted (resumable).");
+  app.footer("Exit status: 0 done, 1 a check is not met, 2 bad input, 3 numerical failure, 4 interrupted (resumable).");
   int status = app::done;
   app::add_run(app, status);
   app::add_check(app, status);
   app::add_anatomy(app, status);
   app::add_study(app, status);
   app::add_bench(app, status);
+  app::add_report(app, status);
+  app::add_export(app, status);
+  app::add_serve(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

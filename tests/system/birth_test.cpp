@@ -2,66 +2,19 @@
 // The program as its users run it: the coarse reference birth judged by bands (never by golden bits), bad input,
 // interruption.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "program.hpp"
+
 namespace {
 
-namespace fs = std::filesystem;
-
-const std::string reference = std::string(CARUS_SOURCE_DIR) + "/scenarios/reference.yaml";
-
-fs::path fresh(const std::string& name) {
-  const fs::path dir = fs::temp_directory_path() / ("carus_system_" + std::to_string(getpid())) / name;
-  fs::remove_all(dir);
-  fs::create_directories(dir.parent_path());
-  return dir;
-}
-
-pid_t start(std::vector<std::string> arguments, const fs::path& log) {
-  arguments.insert(arguments.begin(), CARUS_BINARY);
-  const pid_t child = fork();
-  if (child != 0) return child;
-  if (!std::freopen(log.c_str(), "w", stdout) || dup2(fileno(stdout), STDERR_FILENO) < 0) _exit(127);
-  std::vector<char*> argv;
-  for (auto& a : arguments) argv.push_back(a.data());
-  argv.push_back(nullptr);
-  execv(argv[0], argv.data());
-  _exit(127);
-}
-
-int wait_for(pid_t child) {
-  int status = 0;
-  waitpid(child, &status, 0);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-}
-
-std::string text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return out.str();
-}
-
-std::vector<std::string> short_labour(const fs::path& out) {
-  return {"run",      reference,
-          "--out",    out.string(),
-          "--set",    "resolution=coarse",
-          "--set",    "numerics.labour_duration=90 s",
-          "--set",    "numerics.pseudo_duration=0.09375 s",
-          "--frames", "15"};
-}
+using namespace carus::test;
 
 TEST(Birth, CoarseReferenceMeetsItsBands) {
   const fs::path out = fresh("birth");

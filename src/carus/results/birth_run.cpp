@@ -200,7 +200,7 @@ class BirthRun {
     r.limiting_region = facts.step.limiting_region;
     r.stages = engine_.timings();
     r.wall_meshing = wall_[meshing], r.wall_solving = wall_[solving], r.wall_output = wall_[output];
-    r.threads = o_.threads, r.version = o_.version, r.commit = o_.commit;
+    r.threads = o_.threads, r.version = o_.version, r.commit = o_.commit, r.machine = machine_description();
     write_atomically(o_.out / "summary.json",
                      summary_json(figures_of(curves_->table(), scenario_.loads.contractions), scenario_, r));
   }

@@ -39,7 +39,14 @@ observe::Table read_curves(const std::filesystem::path& file) {
                                    table.rows.size() + 2, cells.size(), table.names.size()));
     }
     observe::Values row;
-    for (const auto& cell : cells) row.push_back(std::strtod(cell.c_str(), nullptr));
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      char* rest = nullptr;
+      row.push_back(std::strtod(cells[k].c_str(), &rest));
+      if (cells[k].empty() || *rest != '\0') {
+        throw InputError(fmt::format("{}: line {}: {}: \"{}\"; allowed a number", file.string(), table.rows.size() + 2,
+                                     table.names[k], cells[k].substr(0, 40)));
+      }
+    }
     table.rows.push_back(std::move(row));
   }
   return table;

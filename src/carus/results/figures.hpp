@@ -7,6 +7,7 @@
 
 #include "carus/labour/labour.hpp"
 #include "carus/observe/milestones.hpp"
+#include "carus/scenario/scenario.hpp"
 
 namespace carus::results {
 
@@ -50,13 +51,21 @@ std::vector<double> contraction_starts(const labour::Contractions& c, double end
 
 Figures figures_of(const observe::Table& table, const labour::Contractions& contractions);
 
-/// One line of targets.md, section 3, held against a run.
+/// One line of what a run is judged by. `asked` is false where its scenario does not claim it; `inside` is told all the
+/// same.
 struct Band {
-  int number;
+  int number;  ///< of the band; 0 for a validation parameter of the paper
   std::string what, expected, source, obtained;
   bool inside;
+  bool asked = true;
 };
+/// Whether all loads are within what the literature covers (push up to 70 mmHg, tone up to 12 mmHg): then a run is
+/// judged by physiology. The reference keeps the paper's numbers and is not asked for pressures that the paper does not
+/// have.
+bool has_literature_loads(const scenario::Loads& loads);
 /// Bands 1-8 and 10; 9 and 11 compare several runs.
-std::vector<Band> bands_of(const Figures& figures, const labour::Contractions& contractions);
+std::vector<Band> bands_of(const Figures& figures, const scenario::Loads& loads);
+/// The validation parameters of the paper's section 5: its value, and the band about it that counts as met.
+std::vector<Band> validation_of(const Figures& figures);
 
 }  // namespace carus::results

@@ -15,8 +15,14 @@ namespace fs = std::filesystem;
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   fs::path temporary = path;
   temporary += ".tmp";
-  write(temporary);
-  fs::rename(temporary, path);
+  try {
+    write(temporary);
+    fs::rename(temporary, path);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);  // half of a file is no use to anyone
+    throw;
+  }
 }
 
 void write_atomically(const fs::path& path, std::string_view text) {

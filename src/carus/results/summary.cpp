@@ -110,14 +110,17 @@ std::string summary_json(const Figures& f, const scenario::Scenario& s, const Ru
   j["declared"] = declared(s);
   j["calibrated"] = Json::array();
   for (const auto& c : s.calibrated) j["calibrated"].push_back({{"key", c.key}, {"to", c.to}});
+  const auto judged = [](const Band& b) -> Json {
+    return {{"what", b.what},         {"expected", b.expected}, {"source", b.source},
+            {"obtained", b.obtained}, {"inside", b.inside},     {"asked", b.asked}};
+  };
+  j["validation"] = Json::array();
+  for (const auto& b : validation_of(f)) j["validation"].push_back(judged(b));
   j["bands"] = Json::array();
-  for (const auto& b : bands_of(f, s.loads.contractions)) {
-    j["bands"].push_back({{"band", b.number},
-                          {"what", b.what},
-                          {"expected", b.expected},
-                          {"source", b.source},
-                          {"obtained", b.obtained},
-                          {"inside", b.inside}});
+  for (const auto& b : bands_of(f, s.loads)) {
+    Json line = {{"band", b.number}};
+    line.update(judged(b));
+    j["bands"].push_back(std::move(line));
   }
   j["wall_s"] = {{"total", number(r.wall_meshing + r.wall_solving + r.wall_output)},
                  {"meshing", number(r.wall_meshing)},
@@ -126,6 +129,7 @@ std::string summary_json(const Figures& f, const scenario::Scenario& s, const Ru
   j["solver_stages_s"] = Json::object();
   for (const auto& [stage, seconds] : r.stages) j["solver_stages_s"][stage] = number(seconds);
   j["threads"] = r.threads;
+  j["machine"] = r.machine;
   j["version"] = r.version;
   j["commit"] = r.commit;
   j["seed"] = 0;  // nothing is random: the mesher's generator always starts from 0, the solver has none

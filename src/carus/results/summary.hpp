@@ -21,7 +21,11 @@ struct RunFacts {
   double wall_meshing = 0, wall_solving = 0, wall_output = 0;  ///< [s]
   int threads = 1;
   std::string version, commit;
+  std::string machine;  ///< processor, its threads, system
 };
+
+/// "Intel(R) Xeon(R) ..., 2 threads, Linux 6.1 x86_64": this machine.
+std::string machine_description();
 
 /// summary.json (schema/summary.schema.json), pretty.
 std::string summary_json(const Figures& figures, const scenario::Scenario& scenario, const RunFacts& facts);

@@ -74,6 +74,12 @@ TEST(BirthRun, WritesTheWholeContract) {
   for (const auto& key : schema["required"]) EXPECT_TRUE(j.contains(key.get<std::string>())) << key;
   for (const auto& [key, value] : j.items()) EXPECT_TRUE(schema["properties"].contains(key)) << key;
   EXPECT_EQ(j["outcome"], "born");
+  EXPECT_NE(j["machine"].get<std::string>().find(" threads"), std::string::npos);
+  for (const char* table : {"validation", "bands"}) {
+    ASSERT_GT(j[table].size(), 10u);
+    for (const auto& key : schema["properties"][table]["items"]["required"])
+      EXPECT_TRUE(j[table][0].contains(key.get<std::string>())) << table << key;
+  }
   EXPECT_NEAR(j["birth_time_s"].get<double>(), 1920 * 0.18 / 0.4, 60);
   EXPECT_GT(j["head_at_contraction_peaks_mm"].size(), 1u);
   const auto birth = read_text(folder / "events.jsonl").find("\"event\": \"birth\"");
