@@ -75,11 +75,11 @@ std::vector<Band> bands_of(const Figures& f, const scenario::Loads& loads) {
   band(6, "pressure: with push", "80-120 mmHg (physiological)", "texts", number(with_push, " mmHg"),
        within(with_push, 80, 120), physiological && loads.push.enabled);
   band(6, "force on the head", "50-130 N", "P x 70.9 cm2", number(f.expulsive_force, " N"),
-       within(f.expulsive_force, 50, 130));
+       within(f.expulsive_force, 50, 130), physiological);
   band(7, "levator stretch", "2.0-3.5", "Lien 2004; BJOG 02321", number(f.levator_stretch, ""),
-       within(f.levator_stretch, 2.0, 3.5));
+       within(f.levator_stretch, 2.0, 3.5), physiological);
   band(7, "perineal ring, transverse", "2.1-3.5", "pmid 22818534", number(f.vulva_ratio, ""),
-       within(f.vulva_ratio, 2.1, 3.5));
+       within(f.vulva_ratio, 2.1, 3.5), physiological);
   band(8, "inverted elements", "0", "numerics", fmt::format("{:.0f}", f.inverted), f.inverted == 0);
   band(8, "penetration", "<= 0.2 mm", "numerics",
        fmt::format("{:.2f} mm to flat facets, {:.2f} mm to the smooth surface", f.penetration, f.penetration_smooth),

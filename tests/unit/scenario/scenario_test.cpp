@@ -278,6 +278,9 @@ TEST(Scenario, ShippedScenariosDifferOnlyInWhatTheyName) {
   EXPECT_FALSE(strict.retraction.enabled);
   Scenario same = strict;
   same.retraction = reference.retraction;
+  EXPECT_DOUBLE_EQ(same.materials.at("vaginal_canal").c10, 30e3);  // the paper's, elastic
+  EXPECT_TRUE(same.materials.at("vaginal_canal").prony.empty());
+  same.materials["vaginal_canal"] = reference.materials.at("vaginal_canal");
   same.name = reference.name, same.description = reference.description, same.calibrated = reference.calibrated;
   EXPECT_EQ(resolved_yaml(same), resolved_yaml(reference));
   const labour::Contractions& c = physiological.loads.contractions;
