@@ -7,7 +7,7 @@ import type { Run } from '../data/run';
 import { download, fileName, h, iconButton } from '../ui/dom';
 import { clockText, numberText, withUnit, words } from '../ui/text';
 import { align, linesOf, toCsv, valueAt, type Line } from './series';
-import { chartColours, type ChartColours } from './theme';
+import { chartColours, LINES, type ChartColours } from './theme';
 import type { Window } from './window';
 
 const HEIGHT = 178;
@@ -97,7 +97,7 @@ export class Chart {
   private colourIndex(line: Line): number {
     // One curve per run: the colour tells the run. Several: it tells the curve, and the dashes the run.
     const perRun = this.plot.columns.length === 1 && !line.reference;
-    return (perRun ? line.run : line.column + (this.plot.columns.length === 1 ? this.runs.length - 1 : 0)) % 6;
+    return (perRun ? line.run : line.column + (this.plot.columns.length === 1 ? this.runs.length - 1 : 0)) % LINES;
   }
   private dash(line: Line): number[] | undefined {
     if (line.reference) return [3, 3];

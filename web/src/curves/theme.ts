@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours of the curves, from the page's style sheet, so that they follow dark and light.
 
+/** Colours of lines before they come again. */
+export const LINES = 8;
+
 export interface ChartColours {
   ink: string;
   muted: string;
@@ -25,6 +28,6 @@ export function chartColours(): ChartColours {
     bandEdge: get('--band-edge'),
     event: get('--event'),
     background: get('--panel'),
-    lines: [1, 2, 3, 4, 5, 6].map((k) => get(`--line-${k}`)),
+    lines: Array.from({ length: LINES }, (_, k) => get(`--line-${k + 1}`)),
   };
 }
