@@ -21,7 +21,7 @@ using testing::Not;
 /// Where the viewer is not built, a page that only has the place for the data: what is tested is what the program puts
 /// there.
 std::vector<std::string> with_viewer(std::vector<std::string> arguments) {
-  const fs::path viewer = fs::temp_directory_path() / ("carus_viewer_" + std::to_string(getpid()) + ".html");
+  const fs::path viewer = fresh("viewer.html");
   std::ofstream(viewer) << "<!doctype html><title>x</title><!--CARUS-DATA-->\n";
   arguments.insert(arguments.end(), {"--viewer", viewer.string()});
   return arguments;
