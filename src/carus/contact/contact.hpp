@@ -55,7 +55,7 @@ struct Options {
   double correction_speed = 1;   ///< [m/s] at most, outward, where penetrated
   double max_depth = 0.004;      ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
   double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch its own other side
-  double fold_depth = 3e-4;      ///< [m] and below which what lies deeper is a ridge, not a fold pressed together
+  double fold_depth = 3e-4;      ///< [m] < max_depth; nearer to itself than that, what lies deeper is a ridge, no fold
   double sagitta_limit = 1e-3;   ///< [m]
   int sweeps = 3;
 };

@@ -123,7 +123,7 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
     const double d2 = d.squaredNorm();
     if (d2 > best || (d2 == best && t >= found)) return;  // of equals the first: the order of search says nothing
     const double depth = -d.dot(other.facet_normal[t]) / other.facet_normal[t].norm();
-    if (depth > deepest(probe, t)) return;
+    if (depth > options_.fold_depth && depth > deepest(probe, t)) return;
     best = d2, found = t;
   });
   if (found < 0) probe.impulse = 0;
@@ -248,10 +248,17 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
     for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(shade[k])]);
     gap -= std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   }
-  if (const double lowest = -deepest(probe, probe.triangle); gap > active_below || gap < lowest) {
+  if (gap > active_below) {
     probe.impulse = 0;
-    clearance = gap > active_below ? std::min(d.norm(), gap) : lowest - gap;
+    clearance = std::min(d.norm(), gap);
     return false;
+  }
+  if (gap < -options_.fold_depth) {  // seldom: the rest shape is not fetched for the others
+    if (const double lowest = -deepest(probe, probe.triangle); gap < lowest) {
+      probe.impulse = 0;
+      clearance = lowest - gap;
+      return false;
+    }
   }
   clearance = 0;
   c.node = probe.node, c.facet = f, c.w = {w[0], w[1], w[2]}, c.n = n, c.gap = gap, c.friction = pass.friction;

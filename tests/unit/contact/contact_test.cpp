@@ -248,7 +248,7 @@ TEST(Contact, BlockedDirectionTakesNoSpeed) {
 
 /// A sheet of facets of 2 mm, plane at rest with its face up, its middle line along y; `x` places (s, y).
 template <class Place>
-std::pair<Contact, std::vector<Vec3>> sheet(int half, double h, Place place) {
+std::pair<Contact, std::vector<Vec3>> sheet(int half, double h, Place place, Options options = {}) {
   std::vector<Vec3> rest, x;
   for (int i = -half; i <= half; ++i) {
     for (int j = 0; j < 3; ++j) rest.emplace_back(i * h, j * h, 0), x.push_back(place(i * h, j * h));
@@ -261,7 +261,7 @@ std::pair<Contact, std::vector<Vec3>> sheet(int half, double h, Place place) {
     }
   }
   return {Contact({Surface("sheet", facets, rest)}, {{0, 0, 0}}, rest, std::vector<Vec3>(x.size(), Vec3::Constant(1e3)),
-                  std::vector<Vec3>(x.size(), Vec3::Zero()), std::vector<std::int16_t>(x.size(), -1), {}, {}),
+                  std::vector<Vec3>(x.size(), Vec3::Zero()), std::vector<std::int16_t>(x.size(), -1), {}, options),
           x};
 }
 
@@ -286,11 +286,16 @@ TEST(Contact, TightFoldTouchesItself) {
 /// Bent the other way, to a ridge sharper than a right angle, its flanks face away from each other and lie behind each
 /// other: nothing has gone through anything, and nothing may push.
 TEST(Contact, SharpRidgeDoesNotTouchItself) {
-  auto [contact, x] = sheet(20, 0.002, [](double s, double y) {
-    return Vec3(0.5 * s, y, -0.866 * std::abs(s));  // 60 degrees between the flanks
-  });
+  const auto ridge = [](double s, double y) { return Vec3(0.5 * s, y, -0.866 * std::abs(s)); };  // 60 degrees
+  auto [contact, x] = sheet(20, 0.002, ridge);
   contact.detect(x, 1e-5, 0);
   EXPECT_TRUE(contact.constraints().empty());
+  // What it is about: by depth alone the flanks would be pushed through each other.
+  Options by_depth;
+  by_depth.fold_depth = by_depth.max_depth;
+  auto [naive, same] = sheet(20, 0.002, ridge, by_depth);
+  naive.detect(same, 1e-5, 0);
+  EXPECT_FALSE(naive.constraints().empty());
 }
 
 }  // namespace
