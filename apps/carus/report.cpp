@@ -44,7 +44,6 @@ std::vector<T> read_all(const std::vector<std::string>& folders, Read read) {
 int check(const std::vector<std::string>& paths) {
   const auto folders = read_all<report::Folder>(paths, [](const std::string& p) { return report::read_folder(p); });
   bool met = true;
-  std::vector<std::string> lines;
   for (const auto& f : folders) {
     const auto verdict = report::judge(f);
     if (!f.scenario) throw InputError(verdict.line);

@@ -152,7 +152,7 @@ const char* name_of(RunStatus status) {
     case RunStatus::in_progress:
       return "in_progress";
   }
-  std::abort();
+  CARUS_ASSERT(false);
 }
 
 std::string Folder::name() const {

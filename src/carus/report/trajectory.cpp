@@ -185,7 +185,7 @@ const char* name_of(Axis axis) {
     case Axis::path:
       return "path";
   }
-  std::abort();
+  CARUS_ASSERT(false);
 }
 
 Vec3 direction(const Motion& m, Axis axis) {
