@@ -2,6 +2,7 @@
 #include "carus/report/coding.hpp"
 
 #include <fmt/format.h>
+#include <vtkBase64Utilities.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -64,15 +65,9 @@ std::vector<std::uint8_t> inflate(std::string_view packed, std::size_t size) {
 }
 
 std::string base64(std::string_view bytes) {
-  constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t here = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < here ? std::uint8_t(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) out += k <= here ? letters[group >> (18 - 6 * k) & 63U] : '=';
-  }
+  std::string out((bytes.size() + 2) / 3 * 4, '\0');
+  const auto* in = reinterpret_cast<const unsigned char*>(bytes.data());
+  out.resize(vtkBase64Utilities::Encode(in, bytes.size(), reinterpret_cast<unsigned char*>(out.data())));
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "carus/core/types.hpp"
+#include "carus/material/volumetric.hpp"
 
 namespace carus::report {
 namespace {
@@ -14,40 +15,11 @@ enum Kind : std::size_t { stretch, contact_pressure_kind, pressure };
 
 }  // namespace
 
-std::vector<std::array<std::int32_t, 3>> boundary(const std::vector<std::array<std::int32_t, 4>>& tets) {
-  struct Facet {
-    std::array<std::int32_t, 3> sorted, wound;
-  };
-  // Of a tet (a, b, c, d) with positive volume, as seen from outside.
-  constexpr std::size_t faces[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
-  std::vector<Facet> all;
-  all.reserve(4 * tets.size());
-  for (const auto& t : tets) {
-    for (const auto& f : faces) {
-      Facet facet{{t[f[0]], t[f[1]], t[f[2]]}, {t[f[0]], t[f[1]], t[f[2]]}};
-      std::sort(facet.sorted.begin(), facet.sorted.end());
-      all.push_back(facet);
-    }
-  }
-  std::sort(all.begin(), all.end(), [](const Facet& a, const Facet& b) { return a.sorted < b.sorted; });
-  std::vector<std::array<std::int32_t, 3>> out;
-  for (std::size_t i = 0; i < all.size();) {
-    std::size_t next = i + 1;
-    while (next < all.size() && all[next].sorted == all[i].sorted) ++next;
-    if (next == i + 1) out.push_back(all[i].wound);
-    i = next;
-  }
-  return out;
-}
-
 Fields::Fields(const FrameMesh& mesh, std::optional<std::map<std::string, material::Material>> materials)
-    : mesh_(mesh), volume_(mesh.tets.size()), node_volume_(mesh.rest.size(), 0), surface_(boundary(mesh.tets)) {
+    : mesh_(mesh), volume_(mesh.tets.size()), node_volume_(mesh.nodes.size(), 0), surface_(mesh::boundary(mesh)) {
   for (std::size_t e = 0; e < mesh.tets.size(); ++e) {
-    const auto& t = mesh.tets[e];
-    const Vec3 a = vec(mesh.rest[t[0]]);
-    volume_[e] =
-        float(std::abs((vec(mesh.rest[t[1]]) - a).cross(vec(mesh.rest[t[2]]) - a).dot(vec(mesh.rest[t[3]]) - a)) / 6);
-    for (const auto i : t) node_volume_[i] += volume_[e];
+    volume_[e] = float(std::abs(mesh::volume(mesh, e)));
+    for (const auto i : mesh.tets[e]) node_volume_[i] += volume_[e];
   }
   kinds_ = {{"stretch", "Largest stretch", "", 1, 0.01, 1, 3},
             {"contact_pressure", "Contact pressure", "kPa", 0, 0.5, 0, 60}};
@@ -59,7 +31,7 @@ Fields::Fields(const FrameMesh& mesh, std::optional<std::map<std::string, materi
     if (m == materials->end()) return;
     bulk[r] = float(m->second.bulk_modulus());
   }
-  for (const auto r : mesh.region) bulk_.push_back(bulk[r]);
+  for (const auto r : mesh.labels) bulk_.push_back(bulk[r]);
   kinds_.push_back({"pressure", "Pressure in the tissue", "kPa", 0, 0.5, -40, 40});
 }
 
@@ -69,7 +41,7 @@ std::vector<float> Fields::values(std::size_t k, const FrameState& state) const 
   std::vector<float> p(state.volume_ratio.size());
   for (std::size_t e = 0; e < p.size(); ++e) {
     const float J = std::max(state.volume_ratio[e], 1e-3F);
-    p[e] = -1e-3F * 0.5F * bulk_[e] * (J - 1 / J);
+    p[e] = -1e-3F * material::FiniteVolume<float>::volume_pressure(bulk_[e], J - 1);
   }
   return node_means(p);
 }

@@ -19,11 +19,10 @@ struct FieldKind {
 
 /// Per-node fields of a run's frames, each from what a frame holds.
 ///
-///     stretch            largest principal stretch, the mean of the tets round the node, weighted by rest volume
-///     pressure           -dU/dJ [kPa], U(J) = K/4 (J^2 - 1 - 2 ln J), the same mean (material/volumetric.hpp);
-///     compression is positive contact_pressure   -f.n / A [kPa], f the contact force on the node, n and A the current
-///     normal and a third of the
-///                        area of its surface facets; 0 where it pulls
+/// - stretch: largest principal stretch, the mean of the tets round the node, weighted by rest volume;
+/// - pressure: -dU/dJ [kPa], the same mean (material/volumetric.hpp); compression is positive;
+/// - contact_pressure: -f.n / A [kPa], f the contact force on the node, n and A the current normal and a third of the
+///   area of its surface facets; 0 where it pulls.
 ///
 /// `materials` by region, "bone" for bones; without them there is no pressure.
 class Fields {
@@ -40,13 +39,10 @@ class Fields {
 
   const FrameMesh& mesh_;
   std::vector<FieldKind> kinds_;
-  std::vector<float> volume_;                         // rest volume of each tet
-  std::vector<float> node_volume_;                    // of the tets round each node
-  std::vector<float> bulk_;                           // per tet [Pa]
-  std::vector<std::array<std::int32_t, 3>> surface_;  // facets of one tet only, outward
+  std::vector<float> volume_;       // rest volume of each tet
+  std::vector<float> node_volume_;  // of the tets round each node
+  std::vector<float> bulk_;         // per tet [Pa]
+  mesh::Triangles surface_;
 };
-
-/// Facets that only one tet has, wound so that their normals point out of it.
-std::vector<std::array<std::int32_t, 3>> boundary(const std::vector<std::array<std::int32_t, 4>>& tets);
 
 }  // namespace carus::report

@@ -100,8 +100,8 @@ class VtuFile {
     for (vtkIdType i = 0; i < a->GetNumberOfValues(); ++i) out.push_back(a->GetValue(i));
     return out;
   }
-  [[nodiscard]] std::vector<std::array<std::int32_t, 4>> tets() const {
-    std::vector<std::array<std::int32_t, 4>> out(cells());
+  [[nodiscard]] std::vector<mesh::Tet> tets() const {
+    std::vector<mesh::Tet> out(cells());
     for (std::size_t e = 0; e < out.size(); ++e) {
       vtkIdType count = 0;
       const vtkIdType* points = nullptr;
@@ -183,12 +183,10 @@ FrameMesh read_frame_mesh(const fs::path& file) {
   FrameMesh m;
   m.tets = vtu.tets();
   m.regions = vtu.names("region_names"), m.organs = vtu.names("organ_names");
-  m.region = vtu.cell_integers("region", m.regions.size()), m.organ = vtu.cell_integers("organ", m.organs.size());
-  m.rest = vtu.positions();
-  const auto u = vtu.node_vectors("displacement");
-  for (std::size_t i = 0; i < u.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) m.rest[i][k] -= u[i][k];
-  }
+  m.labels = vtu.cell_integers("region", m.regions.size()), m.organ = vtu.cell_integers("organ", m.organs.size());
+  const auto x = vtu.positions(), u = vtu.node_vectors("displacement");
+  for (std::size_t i = 0; i < x.size(); ++i)
+    m.nodes.emplace_back(x[i][0] - u[i][0], x[i][1] - u[i][1], x[i][2] - u[i][2]);
   return m;
 }
 

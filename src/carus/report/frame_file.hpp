@@ -7,14 +7,15 @@
 #include <string>
 #include <vector>
 
+#include "carus/mesh/tet_mesh.hpp"
+
 namespace carus::report {
 
-/// What a frame says of the mesh; the same in every frame of a run.
-struct FrameMesh {
-  std::vector<std::array<std::int32_t, 4>> tets;
-  std::vector<std::int32_t> region, organ;  ///< per tet, indices of the names
+/// What a frame says of the mesh; the same in every frame of a run. Nodes are at rest (position less displacement),
+/// labels are indices of `regions`.
+struct FrameMesh : mesh::TetMesh {
+  std::vector<std::int32_t> organ;  ///< per tet, index of `organs`
   std::vector<std::string> regions, organs;
-  std::vector<std::array<float, 3>> rest;  ///< [m] per node: position less displacement
 };
 
 /// One frame's numbers.

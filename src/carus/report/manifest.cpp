@@ -113,7 +113,7 @@ Json provenance(const Json& summary, const Run& r) {
     const auto q = mesh_quality(r.packer->mesh());
     if (!summary.contains("numerics")) {
       add("elements", fmt::format("{}", r.packer->mesh().tets.size()));
-      add("nodes", fmt::format("{}", r.packer->mesh().rest.size()));
+      add("nodes", fmt::format("{}", r.packer->mesh().nodes.size()));
     }
     add("least dihedral angle at rest",
         fmt::format("{:.1f} deg; 1 % of elements below {:.1f} deg", q.least_angle, q.low_angle));
@@ -201,10 +201,10 @@ Json Writer::mesh(const FramePacker& p, const std::string& file) {
   const auto& m = p.mesh();
   Json regions = Json::array();
   for (std::size_t r = 0; r < m.regions.size(); ++r) {
-    const auto tet = std::find(m.region.begin(), m.region.end(), std::int32_t(r));
-    if (tet == m.region.end()) continue;
+    const auto tet = std::find(m.labels.begin(), m.labels.end(), std::int32_t(r));
+    if (tet == m.labels.end()) continue;
     const auto& name = m.regions[r];
-    const auto& organ = m.organs[m.organ[std::size_t(tet - m.region.begin())]];
+    const auto& organ = m.organs[m.organ[std::size_t(tet - m.labels.begin())]];
     const bool bone = name.starts_with("innominate") || name == "sacrum" || name == "coccyx" ||
                       name.find("bone") != std::string::npos;
     const bool soft = name == "levator_ani" || name == "perineal_body" || organ == "abdomen";
@@ -225,7 +225,7 @@ Json Writer::mesh(const FramePacker& p, const std::string& file) {
   } catch (const InputError&) {
     // A mesh without a skull has no head to follow.
   }
-  return {{"nodes", m.rest.size()},           {"tets", m.tets.size()},     {"regions", std::move(regions)},
+  return {{"nodes", m.nodes.size()},          {"tets", m.tets.size()},     {"regions", std::move(regions)},
           {"corners", add(p.corners())},      {"region", add(p.region())}, {"rest", add(p.rest())},
           {"landmarks", std::move(landmarks)}};
 }

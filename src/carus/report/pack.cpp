@@ -12,10 +12,11 @@ namespace carus::report {
 namespace {
 
 /// x of all nodes, then y, then z.
-std::vector<std::int32_t> quantised(const std::vector<std::array<float, 3>>& x, const Quantiser& q) {
+template <class Points>
+std::vector<std::int32_t> quantised(const Points& x, const Quantiser& q) {
   std::vector<std::int32_t> out(3 * x.size());
   for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t i = 0; i < x.size(); ++i) out[k * x.size() + i] = q(double(x[i][k]));
+    for (std::size_t i = 0; i < x.size(); ++i) out[k * x.size() + i] = q(double(x[i][int(k)]));
   }
   return out;
 }
@@ -90,9 +91,9 @@ void FramePacker::find_mesh(const std::vector<FrameEntry>& entries) {
   }
   if (!mesh_) return;
   fields_ = std::make_unique<Fields>(*mesh_, materials_);
-  rest_quantised_ = quantised(mesh_->rest, Quantiser(options_.quantum, "rest position"));
+  rest_quantised_ = quantised(mesh_->nodes, Quantiser(options_.quantum, "rest position"));
   rest_ = pack(steps(rest_quantised_), options_.level);
-  region_ = pack(steps(mesh_->region), options_.level);
+  region_ = pack(steps(mesh_->labels), options_.level);
   corners_ = pack_mesh_corners(*mesh_, options_.level);
 }
 
@@ -134,7 +135,7 @@ Chunk FramePacker::make_chunk(std::span<const FrameEntry> entries, std::vector<s
   chunk.fields.resize(kinds.size());
   for (const auto& entry : entries) {
     try {
-      const auto state = read_frame_state(entry.file, mesh_->rest.size(), mesh_->tets.size());
+      const auto state = read_frame_state(entry.file, mesh_->nodes.size(), mesh_->tets.size());
       auto position = quantised(state.x, Quantiser(options_.quantum, entry.file.string()));
       std::vector<std::vector<std::int32_t>> fields;
       for (std::size_t k = 0; k < kinds.size(); ++k) {

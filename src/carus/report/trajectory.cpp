@@ -157,7 +157,7 @@ void add_wrench(Motion& motion, const Folder& folder, std::vector<std::string>& 
     parallel::for_chunks(entries.size(), 8, [&](std::size_t begin, std::size_t end, std::size_t) {
       for (std::size_t k = begin; k < end; ++k) {
         try {
-          wrench[k] = head.contact(read_frame_state(entries[k].file, mesh.rest.size(), mesh.tets.size()));
+          wrench[k] = head.contact(read_frame_state(entries[k].file, mesh.nodes.size(), mesh.tets.size()));
         } catch (const InputError& e) {
           problems[k] = e.what();
         }

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 /// Positions of all frames as a viewer decodes them [m].
 std::vector<std::vector<double>> decoded(const FramePacker& p) {
-  const auto n = p.mesh().rest.size();
+  const auto n = p.mesh().nodes.size();
   auto rest = from_planes(inflate(p.rest().bytes, p.rest().raw), p.rest().planes, 3 * n);
   for (std::size_t i = 1; i < rest.size(); ++i) rest[i] += rest[i - 1];
   std::vector<std::vector<double>> all;
@@ -50,14 +50,14 @@ TEST_F(PackedFrames, AreThoseOfTheFilesWithinHalfAStep) {
   ASSERT_EQ(positions.size(), entries.size());
   ASSERT_GT(positions.size(), 12u);
   EXPECT_THAT(p.notes(), testing::IsEmpty());
-  const auto n = p.mesh().rest.size();
+  const auto n = p.mesh().nodes.size();
   double worst = 0, moved = 0;
   for (std::size_t f = 0; f < entries.size(); ++f) {
     const auto state = read_frame_state(entries[f].file, n, p.mesh().tets.size());
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t k = 0; k < 3; ++k) {
         worst = std::max(worst, std::abs(positions[f][k * n + i] - double(state.x[i][k])));
-        moved = std::max(moved, std::abs(double(state.x[i][k]) - double(p.mesh().rest[i][k])));
+        moved = std::max(moved, std::abs(double(state.x[i][k]) - p.mesh().nodes[i][int(k)]));
       }
     }
   }
@@ -78,7 +78,7 @@ TEST_F(PackedFrames, MeshReadsBack) {
   }
   auto region = from_planes(inflate(p.region().bytes, p.region().raw), p.region().planes, t);
   for (std::size_t e = 1; e < t; ++e) region[e] += region[e - 1];
-  EXPECT_EQ(region, p.mesh().region);
+  EXPECT_EQ(region, p.mesh().labels);
   EXPECT_EQ(p.mesh().regions, (std::vector<std::string>{"skull", "fetal_body"}));
 }
 
@@ -177,9 +177,8 @@ TEST_F(PackedFrames, OfARunInProgressAreAddedWithoutReadingTheOldOnes) {
 TEST(Fields, AreTheirClosedForms) {
   const auto model = test::fetus_of_boxes();
   FrameMesh m;
-  for (const auto& x : model.mesh.nodes) m.rest.push_back({float(x[0]), float(x[1]), float(x[2])});
-  for (const auto& t : model.mesh.tets) m.tets.push_back({t[0], t[1], t[2], t[3]});
-  m.region = m.organ = model.mesh.labels;
+  m.nodes = model.mesh.nodes, m.tets = model.mesh.tets;
+  m.labels = m.organ = model.mesh.labels;
   m.regions = m.organs = {"skull", "fetal_body"};
   material::Material material;
   material.c10 = 75e3, material.poisson = 0.45;
@@ -190,13 +189,13 @@ TEST(Fields, AreTheirClosedForms) {
   ASSERT_EQ(fields.kinds()[2].name, "pressure");
 
   FrameState s;
-  s.x = m.rest;
+  for (const auto& x : m.nodes) s.x.push_back({float(x[0]), float(x[1]), float(x[2])});
   s.stretch.assign(m.tets.size(), 1.5F), s.volume_ratio.assign(m.tets.size(), 0.98F);
-  s.contact_force.assign(m.rest.size(), {0, 0, 0});
+  s.contact_force.assign(m.nodes.size(), {0, 0, 0});
   // 7 kPa on the head's lower face: each node takes a third of the facets round it, pushed up.
   double force = 0;
-  for (const auto& f : boundary(m.tets)) {
-    const auto low = [&](std::int32_t i) { return m.rest[i][2] == 0; };
+  for (const auto& f : mesh::boundary(m)) {
+    const auto low = [&](std::int32_t i) { return m.nodes[i][2] == 0; };
     if (!low(f[0]) || !low(f[1]) || !low(f[2])) continue;
     const double area = 0.08 * 0.10 / 8;  // 2 x 2 squares of two facets
     for (const auto i : f) s.contact_force[i][2] += float(7e3 * area / 3);
@@ -206,15 +205,15 @@ TEST(Fields, AreTheirClosedForms) {
   const auto stretch = fields.values(0, s), contact = fields.values(1, s), pressure = fields.values(2, s);
   const double expected = -0.5 * material.bulk_modulus() * (0.98 - 1 / 0.98) / 1e3;
   int centres = 0;
-  for (std::size_t i = 0; i < m.rest.size(); ++i) {
+  for (std::size_t i = 0; i < m.nodes.size(); ++i) {
     EXPECT_NEAR(stretch[i], 1.5, 1e-5);
     EXPECT_NEAR(pressure[i], expected, 1e-3 * expected);
-    const bool centre = m.rest[i][2] == 0 && std::abs(m.rest[i][0]) < 0.03 && std::abs(m.rest[i][1]) < 0.04;
+    const bool centre = m.nodes[i][2] == 0 && std::abs(m.nodes[i][0]) < 0.03 && std::abs(m.nodes[i][1]) < 0.04;
     if (centre) {
       EXPECT_NEAR(contact[i], 7, 1e-4);
       ++centres;
     }
-    if (m.rest[i][2] > 0.01F) {
+    if (m.nodes[i][2] > 0.01) {
       EXPECT_EQ(contact[i], 0);
     }
   }
@@ -228,8 +227,8 @@ TEST(Fields, AreTheirClosedForms) {
   auto w = head.contact(s);
   EXPECT_NEAR(w.force.z(), force, 1e-3);
   EXPECT_NEAR(w.moment.norm(), 0, 1e-3);
-  for (std::size_t i = 0; i < m.rest.size(); ++i) {
-    if (m.rest[i][0] < 0.01F) s.contact_force[i] = {0, 0, 0};
+  for (std::size_t i = 0; i < m.nodes.size(); ++i) {
+    if (m.nodes[i][0] < 0.01) s.contact_force[i] = {0, 0, 0};
   }
   w = head.contact(s);
   EXPECT_NEAR(w.moment.y(), -0.04 * w.force.z(), 1e-6) << "all that is left acts at x = 40 mm";
