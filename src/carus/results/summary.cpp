@@ -44,6 +44,22 @@ Json numerics_of(const Figures& f, const RunFacts& r) {
           {"limiting_region", r.limiting_region}};
 }
 
+/// What of each tissue's stiffness relaxes, and in what time: "vaginal_canal 0.75 in 300 s".
+std::string relaxation(const scenario::Scenario& s) {
+  std::string text;
+  for (const auto& [region, material] : s.materials)
+    for (const auto& term : material.prony)
+      text += fmt::format("{}{} {:g} in {:g} s", text.empty() ? "" : "; ", region, term.g, term.tau);
+  return text.empty() ? "none" : text;
+}
+
+/// How the uterine wall keeps what contractions won; the paper's wall is passive.
+std::string retraction_law(const scenario::Retraction& r) {
+  if (!r.enabled) return "none";
+  if (r.kind == fem::Retraction::Kind::imposed) return fmt::format("imposed, to {:g} of the length", r.final);
+  return fmt::format("ratchet, {:g} s, isometric strain {:g}", r.tau, r.isometric_strain);
+}
+
 Json declared(const scenario::Scenario& s) {
   const auto o = scenario::explicit_options(s);
   return {{"resolution", scenario::name_of(s.resolution)},
@@ -56,7 +72,11 @@ Json declared(const scenario::Scenario& s) {
           {"contact_search_mm", number(1e3 * o.contact_search)},
           {"contact_correction_m_s", number(o.contact_correction)},
           {"canal_radius_mm", number(1e3 * s.anatomy.canal.radius)},
-          {"retraction", s.retraction.enabled}};
+          {"canal_bed_posterior_kpa_mm", number(1e-6 * s.attachments.bed_posterior)},
+          {"canal_bed_lateral_kpa_mm", number(1e-6 * s.attachments.bed_lateral)},
+          {"retraction", s.retraction.enabled},
+          {"retraction_law", retraction_law(s.retraction)},
+          {"relaxation", relaxation(s)}};
 }
 
 Json movements(const Figures& f) {

@@ -38,6 +38,25 @@ struct Case {
   }
 };
 
+TEST(BirthRun, DeclaresWhatThePaperDoesNotHave) {
+  const Folder folder("declared");
+  Case c;
+  c.scenario.materials["vaginal_canal"].prony = {{0.75, 300}};
+  c.scenario.retraction.enabled = true, c.scenario.retraction.kind = fem::Retraction::Kind::ratchet;
+  c.scenario.retraction.tau = 150, c.scenario.retraction.isometric_strain = 0.05;
+  c.scenario.attachments.bed_lateral = 4.5e6;
+  c.run(folder / "with");
+  auto j = nlohmann::json::parse(read_text(folder / "with" / "summary.json"))["declared"];
+  EXPECT_EQ(j["relaxation"], "vaginal_canal 0.75 in 300 s");
+  EXPECT_EQ(j["retraction_law"], "ratchet, 150 s, isometric strain 0.05");
+  EXPECT_EQ(j["canal_bed_lateral_kpa_mm"], 4.5);
+  c.scenario.materials["vaginal_canal"].prony.clear(), c.scenario.retraction.enabled = false;
+  c.run(folder / "without");
+  j = nlohmann::json::parse(read_text(folder / "without" / "summary.json"))["declared"];
+  EXPECT_EQ(j["relaxation"], "none");
+  EXPECT_EQ(j["retraction_law"], "none");
+}
+
 /// All that a run leaves but wall times, checkpoint and log.
 std::map<std::string, std::string> contents(const fs::path& folder) {
   std::map<std::string, std::string> files;
