@@ -93,7 +93,6 @@ export class Viewer {
     if (this.trail) this.stage.scene.add(this.trail.object);
     run.onChange = (error) => this.arrived(error);
     this.setField(this.choices.field);
-    if (this.choices.cut && !AXES[this.choices.cut.axis]) this.choices.cut = null;
     this.fit();
     if (this.choices.pose) {
       this.stage.setPose(this.choices.pose);
