@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
+#include <optional>
 #include <thread>
 
 #include "app.hpp"
+#include "carus/results/checkpoint.hpp"
 #include "carus/results/engine.hpp"
 #include "carus/scenario/assemble.hpp"
 #include "scenes.hpp"
@@ -18,6 +21,7 @@ namespace {
 struct BenchArguments {
   std::string scenario = "scenarios/reference.yaml";
   std::vector<std::string> overrides;
+  std::filesystem::path from;
   int steps = 2000, repeats = 5, threads = 0;
   bool only_block = false;
 };
@@ -84,21 +88,35 @@ void bench_step(int threads, bool nodal_pressure, int repeats) {
   });
 }
 
-/// The first steps of a labour, from rest each time.
+/// The state that a run has left in its folder.
+fem::State state_of(const std::filesystem::path& run, const scenario::Scenario& s, const mesh::TetMesh& mesh) {
+  const auto file = run / "checkpoint.h5";
+  auto checkpoint = results::read_checkpoint(file);
+  results::refuse_foreign(file, checkpoint, results::hash_of(s), results::hash_of(mesh));
+  return std::move(checkpoint.state);
+}
+
+/// Steps of a labour: the first ones, or those after the state of a run; the same ones in each repetition.
 void bench_birth(scenario::Scenario s, const BenchArguments& a, const std::vector<int>& threads) {
   const auto anatomy = build_anatomy(s);
   const auto assembly = scenario::assemble(s, anatomy);
+  std::optional<fem::State> start;
+  if (!a.from.empty()) start = state_of(a.from, s, assembly.model.mesh);
+  const auto where = start ? fmt::format("after {:.1f} min", start->time / 60) : "first steps";
   for (const int n : threads) {
     s.numerics.threads = n;
-    const auto scene = fmt::format("{}, {}, first steps", s.name, scenario::name_of(s.resolution));
+    const auto scene = fmt::format("{}, {}, {}", s.name, scenario::name_of(s.resolution), where);
     print_scene(scene, assembly.model.mesh.tets.size(), n, a.repeats, [&] {
       const auto engine = results::make_engine(s, assembly.model);
       const auto facts = engine->facts();
+      if (start) engine->restore(*start);
+      const auto first = engine->state().step;
       const auto before = engine->timings();
       const auto begin = std::chrono::steady_clock::now();
-      engine->advance_to(a.steps * facts.step.time_step * facts.labour_per_pseudo);
+      engine->advance_to(engine->state().time + a.steps * facts.step.time_step * facts.labour_per_pseudo);
       const double whole = seconds_since(begin);
-      return std::pair(between(before, engine->timings(), whole), int(std::max<std::int64_t>(1, engine->state().step)));
+      return std::pair(between(before, engine->timings(), whole),
+                       int(std::max<std::int64_t>(1, engine->state().step - first)));
     });
   }
 }
@@ -139,6 +157,8 @@ void add_bench(CLI::App& app, int& status) {
   c->add_option("SCENARIO", a->scenario, "Scenario whose first steps are measured; scenarios/reference.yaml if silent");
   c->add_option("--steps", a->steps, "Steps of the birth; 2000 reach the first contraction")
       ->check(CLI::Range(1, 10000000));
+  c->add_option("--from", a->from, "Results folder of an unfinished run of the scenario: measure from its checkpoint on")
+      ->check(CLI::ExistingDirectory);
   c->add_option("--repeats", a->repeats, "Repetitions of each measurement")->check(CLI::Range(1, 1000));
   c->add_option("--threads", a->threads, "Measure with one thread and with this many; 0: all")
       ->check(CLI::Range(0, 1024));
@@ -148,7 +168,7 @@ void add_bench(CLI::App& app, int& status) {
   c->add_flag("--only-block", a->only_block, "Leave the birth out: no scenario, no meshing");
   c->footer(
       "Examples:\n  carus bench\n  carus bench scenarios/reference.yaml --set resolution=coarse --steps 500\n"
-      "  carus bench --only-block --threads 1");
+      "  carus bench scenarios/reference.yaml --from out/demo --steps 500\n  carus bench --only-block --threads 1");
   c->callback([a, &status] { bench_all(*a), status = done; });
 }
 

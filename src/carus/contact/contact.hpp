@@ -61,20 +61,24 @@ struct Options {
 };
 
 /// Node against facet: v_rel = n.(v_node - sum w_k v_k) >= target.
-struct Constraint {
+struct alignas(64) Constraint {
   std::int32_t node;
   std::array<std::int32_t, 3> facet;
+  std::array<double, 3> w;
+  Vec3 n;
+  double mass;                  ///< effective mass [kg]
+  double target;                ///< least normal speed [m/s]
+  double impulse;               ///< [N s], >= 0
+  std::array<Vec3, 4> response;  ///< velocities that a unit impulse gives to the node and to the facet's corners [1/kg]
+  // What the sweeps of a frictionless contact do not read.
+  double gap;                        ///< [m] on the smooth gap
+  double shift;                      ///< [m] gap = n.(x_node - sum w_k x_k) + shift, until the foot is found anew
+  double lever_node, lever_facet;    ///< axis.((p - o) x n) of the hinges
+  Vec3 slip;                         ///< tangential impulse [N s]
   std::int32_t probe;
   std::int16_t hinge_node, hinge_facet;  ///< -1: none
   float friction;
-  std::array<double, 3> w;
-  Vec3 n;
-  double lever_node, lever_facet;  ///< axis.((p - o) x n) of the hinges
-  double mass;                     ///< effective mass [kg]
-  double target;                   ///< least normal speed [m/s]
-  double gap;                      ///< [m] on the smooth gap
-  double impulse;                  ///< [N s], >= 0
-  Vec3 slip;                       ///< tangential impulse [N s]
+  std::int32_t part;  ///< see Contact::parts
 };
 
 /// Frictionless or Coulomb contact between moving surfaces by impulses: find gaps, then projected Gauss-Seidel on
@@ -90,8 +94,10 @@ class Contact {
           std::vector<Vec3> inverse_mass, std::vector<Vec3> inverse_mass_blocked,
           std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges, const Options& options);
 
-  /// Finds the active constraints. `max_speed` bounds every nodal speed in this step [m/s].
-  void detect(const std::vector<Vec3>& x, double dt, double max_speed);
+  /// Finds the active constraints, true if they are others than before: the foot of a node on its facet is looked for
+  /// anew only every few steps, between them the gap changes along its normal. `max_speed` bounds every nodal speed in
+  /// this step [m/s].
+  bool detect(const std::vector<Vec3>& x, double dt, double max_speed);
   /// Changes the velocities (and hinge rates) so that no active pair closes faster than its gap allows.
   void solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate);
   /// To be told how far any node moved at most in this step [m].
@@ -112,6 +118,10 @@ class Contact {
 
  private:
   static constexpr int never = 1 << 30;
+  /// The sweeps go through as many parts of the constraints side by side, cut across the longest direction so that no
+  /// two of them share a node; what lies on the cuts comes after them. Not the number of threads, so that the result
+  /// does not depend on it.
+  static constexpr int parts = 4;
   struct Pass {
     int nodes, facets;  ///< surfaces
     bool self;
@@ -145,10 +155,15 @@ class Contact {
   void measure_motion(const std::vector<Vec3>& x);
   [[nodiscard]] bool worn_out() const;
   [[nodiscard]] double travel(const Pass& p) const { return motion_[p.nodes].travel + motion_[p.facets].travel; }
-  template <bool look>
-  void constrain_all(const std::vector<std::int32_t>& list, const std::vector<Vec3>& x, double dt, double active_below);
-  void fetch_ahead(const std::vector<std::int32_t>& list, std::size_t i, std::size_t end,
-                   const std::vector<Vec3>& x) const;
+  void look(const std::vector<Vec3>& x, double needed);
+  void constrain_all(const std::vector<Vec3>& x);
+  void constrain_chunk(std::size_t begin, std::size_t end, const std::vector<Vec3>& x, std::vector<Constraint>& out);
+  void gather_parts();
+  void refresh(const std::vector<Vec3>& x);
+  void keep_impulses();
+  void cut(const std::vector<Vec3>& x);
+  [[nodiscard]] int part_of(const Constraint& c, const std::vector<Vec3>& x) const;
+  [[nodiscard]] double target(double gap) const;
   void update_normals(const std::vector<Vec3>& x);
   void renew_probe(Probe& probe, const std::vector<Vec3>& x) const;
   Foot follow(Probe& probe, const std::vector<Vec3>& x) const;
@@ -156,14 +171,17 @@ class Contact {
   bool through_the_wall(const Surface& wall, const Probe& probe, std::int32_t triangle) const;
   [[nodiscard]] double deepest(const Probe& probe, std::int32_t triangle) const;
   bool admissible(const Probe& probe, std::int32_t triangle) const;
-  bool constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c,
-                 double& clearance) const;
+  bool constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c, double& clearance) const;
   [[nodiscard]] Vec3 response(std::int32_t node, const Vec3& impulse) const {
     const Vec3& b = inverse_mass_blocked_[node];
     return inverse_mass_[node].cwiseProduct(impulse) - b.dot(impulse) * b;
   }
   void finish(Constraint& c, const std::vector<Vec3>& x) const;
-  void apply(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v, std::vector<double>& rate) const;
+  void push(const Constraint& c, double impulse, std::vector<Vec3>& v, std::vector<double>& rate) const;
+  void shear(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v) const;
+  double relax(Constraint& c, std::vector<Vec3>& v, std::vector<double>& rate) const;
+  void rub(Constraint& c, std::vector<Vec3>& v) const;
+  void sweep(int part, int number, std::vector<Vec3>& v, std::vector<double>& rate);
 
   std::vector<Surface> surfaces_;
   std::vector<Pair> pairs_;
@@ -177,15 +195,17 @@ class Contact {
   std::vector<TriangleGrid> grids_;  ///< per surface
   std::vector<Motion> motion_;       ///< per surface
   std::vector<std::int32_t> near_;   ///< probes with a partner, in rising order
-  std::vector<std::int32_t> awake_;  ///< those of them that may touch before the next look
   std::vector<std::vector<Constraint>> chunk_constraints_;
-  std::vector<std::vector<std::int32_t>> chunk_awake_;
-  std::vector<Constraint> constraints_;
-  std::vector<std::int32_t> live_;  ///< constraints that the first sweep did not leave far from touching
-  double dt_ = 0;
+  std::vector<Constraint> constraints_;  ///< by parts, within them by probes
+  std::array<std::size_t, parts + 2> part_begin_{};
+  std::array<std::vector<std::int32_t>, parts + 1> live_;  ///< those that the first sweep left close to touching
+  int cut_axis_ = 0;
+  std::array<double, parts - 1> cuts_{};  ///< [m] along the axis
+  double dt_ = 0, closing_ = 0;  ///< [s], [m]: what two nodes may near each other by in a step
   bool look_due_ = true;
   double since_look_ = 0;   ///< [m] that the fastest node of all may have travelled since the last look
-  double awake_below_ = 0;  ///< [m] clearance below which the last look left probes awake
+  double held_below_ = 0;  ///< [m] gap below which the last look left constraints
+  int steps_since_normals_ = never;
   int steps_since_renewal_ = never;
   std::int64_t renewals_ = 0;
   double seconds_renewing_ = 0;

@@ -12,9 +12,11 @@ namespace carus::contact {
 namespace {
 
 constexpr std::size_t probe_chunk = 256;
-constexpr int normals_every = 8;  // steps: normals turn slowly against the step
-constexpr int renew_every = 400;  // steps at most, so that folds find their new partner
-constexpr int look_every = 4;     // steps, about: fewer cost looks, more keep probes awake that do not touch
+constexpr std::size_t constraint_chunk = 512;
+constexpr int normals_every = 8;      // steps, about: normals turn slowly against the step
+constexpr int renew_every = 400;      // steps at most, so that folds find their new partner
+constexpr int look_every = 4;         // steps, about: fewer cost looks, more hold constraints that do not touch
+constexpr double look_within = 2e-4;  // [m] of travel: the foot on its facet and the normal there stay good for that
 constexpr double awake = -std::numeric_limits<double>::infinity();
 
 Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3& w) {
@@ -66,7 +68,6 @@ Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const s
                                  [&](std::int32_t n) { return hinge_of_node_[n] >= 0 || !inverse_mass_[n].isZero(); }));
   }
   chunk_constraints_.resize((probes_.size() + probe_chunk - 1) / probe_chunk);
-  chunk_awake_.resize(chunk_constraints_.size());
 }
 
 bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
@@ -162,6 +163,33 @@ void Contact::begin_stretch(const std::vector<Vec3>& x) {
     probes_[i].sleeps_until = awake;
     if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
   }
+  cut(x);
+}
+
+/// Cuts that share the nodes in contact out evenly, across the direction in which these reach farthest.
+void Contact::cut(const std::vector<Vec3>& x) {
+  if (near_.empty()) return;
+  Eigen::AlignedBox3d box;
+  for (const auto i : near_) box.extend(x[probes_[std::size_t(i)].node]);
+  box.sizes().maxCoeff(&cut_axis_);
+  std::vector<double> at;
+  at.reserve(near_.size());
+  for (const auto i : near_) at.push_back(x[probes_[std::size_t(i)].node][cut_axis_]);
+  for (std::size_t c = 0; c < cuts_.size(); ++c) {
+    const auto nth = at.begin() + std::ptrdiff_t((c + 1) * at.size() / parts);
+    std::nth_element(at.begin(), nth, at.end());
+    cuts_[c] = *nth;
+  }
+}
+
+/// The part that has all four nodes, or `parts` where there is none or a hinge is shared.
+int Contact::part_of(const Constraint& c, const std::vector<Vec3>& x) const {
+  if (c.hinge_node >= 0 || c.hinge_facet >= 0) return parts;
+  const auto side = [&](std::int32_t node) {
+    return std::upper_bound(cuts_.begin(), cuts_.end(), x[node][cut_axis_]) - cuts_.begin();
+  };
+  const auto part = side(c.node);
+  return std::all_of(c.facet.begin(), c.facet.end(), [&](auto n) { return side(n) == part; }) ? int(part) : parts;
 }
 
 void Contact::measure_motion(const std::vector<Vec3>& x) {
@@ -181,6 +209,7 @@ void Contact::measure_motion(const std::vector<Vec3>& x) {
 
 /// Of what moves; a fixed bone has had its normals since the start.
 void Contact::update_normals(const std::vector<Vec3>& x) {
+  steps_since_normals_ = 0;
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
     if (moves_[s]) surfaces_[s].update_normals(x);
   }
@@ -217,8 +246,7 @@ Contact::Foot Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
 }
 
 /// `clearance`: how far node and facets must move towards each other, at least, before this can become a constraint.
-bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, double active_below, Constraint& c,
-                        double& clearance) const {
+bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c, double& clearance) const {
   const Pass& pass = passes_[probe.pass];
   const Surface& other = surfaces_[pass.facets];
   const Foot nearest = follow(probe, x);
@@ -248,7 +276,7 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
     for (int k = 0; k < 3; ++k) sagitta += 0.5 * w[k] * (x[f[k]] - foot).dot(other.normal[std::size_t(shade[k])]);
     gap -= std::clamp(sagitta, -options_.sagitta_limit, options_.sagitta_limit);
   }
-  if (gap > active_below) {
+  if (gap > held_below_) {
     probe.impulse = 0;
     clearance = std::min(d.norm(), gap);
     return false;
@@ -263,15 +291,24 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, double dt, dou
   clearance = 0;
   c.node = probe.node, c.facet = f, c.w = {w[0], w[1], w[2]}, c.n = n, c.gap = gap, c.friction = pass.friction;
   c.impulse = probe.impulse, c.slip = Vec3::Zero();
-  c.target = gap >= 0 ? -gap / dt : std::min(-gap / dt, options_.correction_speed);
+  c.target = target(gap), c.shift = gap - n.dot(d);
   finish(c, x);
   return c.mass > 0;
 }
 
-/// Effective mass 1 / (n.M^-1 n + sum w_k^2 n.M_k^-1 n + hinges).
+/// Least normal speed: what closes an open gap by the end of the step, or opens a penetrated one without a jerk.
+double Contact::target(double gap) const {
+  return gap >= 0 ? -gap / dt_ : std::min(-gap / dt_, options_.correction_speed);
+}
+
+/// Responses, and the effective mass 1 / (n.M^-1 n + sum w_k^2 n.M_k^-1 n + hinges).
 void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {
-  double inverse = c.n.dot(response(c.node, c.n));
-  for (int k = 0; k < 3; ++k) inverse += c.w[k] * c.w[k] * c.n.dot(response(c.facet[k], c.n));
+  c.response[0] = response(c.node, c.n);
+  double inverse = c.n.dot(c.response[0]);
+  for (int k = 0; k < 3; ++k) {
+    c.response[k + 1] = -c.w[k] * response(c.facet[k], c.n);
+    inverse -= c.w[k] * c.n.dot(c.response[k + 1]);
+  }
   const auto lever = [&](std::int16_t h) {
     return h < 0 ? 0.0 : hinges_[h].axis.dot((x[c.node] - hinges_[h].point).cross(c.n));
   };
@@ -284,17 +321,18 @@ void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {
 
 /// Some pair of surfaces has moved so far since the renewal that what was out of reach may touch before the next look.
 bool Contact::worn_out() const {
-  const double reserve = options_.reach - options_.sagitta_limit - awake_below_;
+  const double reserve = options_.reach - options_.sagitta_limit - held_below_;
   const auto moved = [&](int surface) { return motion_[surface].before + motion_[surface].net; };
   return std::any_of(passes_.begin(), passes_.end(),
                      [&](const Pass& p) { return moved(p.nodes) + moved(p.facets) > reserve; });
 }
 
 void Contact::pause(const std::vector<Vec3>& x) {
+  keep_impulses();
   measure_motion(x);
   for (Motion& m : motion_) m.before += m.net;
   begin_stretch(x);
-  look_due_ = true;
+  look_due_ = true, steps_since_normals_ = never;
 }
 
 std::vector<double> Contact::save() const {
@@ -309,85 +347,95 @@ void Contact::load(const double* saved, const std::vector<Vec3>& x) {
   steps_since_renewal_ = int(*saved++);
   for (Motion& m : motion_) m.before = *saved++;
   for (Probe& p : probes_) p.triangle = std::int32_t(*saved++), p.impulse = *saved++;
+  constraints_.clear(), part_begin_.fill(0);
   begin_stretch(x);
-  look_due_ = true;
+  look_due_ = true, steps_since_normals_ = never;
 }
 
-/// The data of a contact lie all over the memory, and by the next step the elements have swept them out of the caches:
-/// ask for them a few probes ahead.
-void Contact::fetch_ahead(const std::vector<std::int32_t>& list, std::size_t i, std::size_t end,
-                          const std::vector<Vec3>& x) const {
-  constexpr std::size_t far = 24, middle = 16, close = 8;
-  if (i + far < end) __builtin_prefetch(&probes_[std::size_t(list[i + far])]);
-  if (i + middle < end) {
-    const Probe& p = probes_[std::size_t(list[i + middle])];
-    const Surface& other = surfaces_[passes_[p.pass].facets];
-    __builtin_prefetch(&other.triangles[p.triangle]);
-    __builtin_prefetch(&other.local[p.triangle]);
-    __builtin_prefetch(&other.shade[p.triangle]);
-    __builtin_prefetch(&x[p.node]);
-    __builtin_prefetch(&inverse_mass_[p.node]);
-  }
-  if (i + close < end) {
-    const Probe& p = probes_[std::size_t(list[i + close])];
-    const Surface& other = surfaces_[passes_[p.pass].facets];
-    for (int k = 0; k < 3; ++k) {
-      __builtin_prefetch(&x[other.triangles[p.triangle][k]]);
-      __builtin_prefetch(&other.normal[std::size_t(other.shade[p.triangle][k])]);
-      __builtin_prefetch(&inverse_mass_[other.triangles[p.triangle][k]]);
+/// Constraints of the probes near_[begin..end).
+void Contact::constrain_chunk(std::size_t begin, std::size_t end, const std::vector<Vec3>& x,
+                              std::vector<Constraint>& out) {
+  out.clear();
+  Constraint c;
+  double clearance = 0;
+  for (std::size_t i = begin; i < end; ++i) {
+    Probe& probe = probes_[std::size_t(near_[i])];
+    const double so_far = travel(passes_[probe.pass]);
+    if (probe.sleeps_until - so_far > held_below_) continue;
+    if (constrain(probe, x, c, clearance)) {
+      c.probe = near_[i], c.part = part_of(c, x);
+      out.push_back(c);
     }
+    probe.sleeps_until = clearance > held_below_ ? so_far + clearance : awake;
   }
 }
 
-/// Constraints of the probes of a list; with `look`, also which of them stay awake until the next look.
-template <bool look>
-void Contact::constrain_all(const std::vector<std::int32_t>& list, const std::vector<Vec3>& x, double dt,
-                            double active_below) {
-  parallel::for_chunks(list.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t chunk) {
-    auto& out = chunk_constraints_[chunk];
-    out.clear();
-    if (look) chunk_awake_[chunk].clear();
-    Constraint c;
-    double clearance = 0;
+void Contact::constrain_all(const std::vector<Vec3>& x) {
+  parallel::for_chunks(near_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t chunk) {
+    constrain_chunk(b, e, x, chunk_constraints_[chunk]);
+  });
+  gather_parts();
+}
+
+/// One list, by parts; within a part the order of the probes.
+void Contact::gather_parts() {
+  const std::size_t chunks = (near_.size() + probe_chunk - 1) / probe_chunk;
+  part_begin_.fill(0);
+  for (std::size_t k = 0; k < chunks; ++k) {
+    for (const Constraint& c : chunk_constraints_[k]) ++part_begin_[std::size_t(c.part) + 1];
+  }
+  for (std::size_t p = 0; p <= parts; ++p) part_begin_[p + 1] += part_begin_[p];
+  constraints_.resize(part_begin_.back());
+  auto next = part_begin_;
+  for (std::size_t k = 0; k < chunks; ++k) {
+    for (const Constraint& c : chunk_constraints_[k]) constraints_[next[std::size_t(c.part)]++] = c;
+  }
+}
+
+/// Gaps of the constraints at hand, along their normals.
+void Contact::refresh(const std::vector<Vec3>& x) {
+  parallel::for_chunks(constraints_.size(), constraint_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
     for (std::size_t i = b; i < e; ++i) {
-      fetch_ahead(list, i, e, x);
-      Probe& probe = probes_[std::size_t(list[i])];
-      if (look && probe.sleeps_until - travel(passes_[probe.pass]) > awake_below_) continue;
-      if (constrain(probe, x, dt, active_below, c, clearance)) c.probe = list[i], out.push_back(c);
-      if (!look) continue;
-      const bool sleeps = clearance > awake_below_;
-      probe.sleeps_until = sleeps ? travel(passes_[probe.pass]) + clearance : awake;
-      if (!sleeps) chunk_awake_[chunk].push_back(list[i]);
+      Constraint& c = constraints_[i];
+      const Vec3 foot = c.w[0] * x[c.facet[0]] + c.w[1] * x[c.facet[1]] + c.w[2] * x[c.facet[2]];
+      c.gap = c.n.dot(x[c.node] - foot) + c.shift;
+      c.target = target(c.gap);
+      c.slip.setZero();
     }
   });
-  const std::size_t chunks = (list.size() + probe_chunk - 1) / probe_chunk;
-  constraints_.clear();
-  for (std::size_t c = 0; c < chunks; ++c)
-    constraints_.insert(constraints_.end(), chunk_constraints_[c].begin(), chunk_constraints_[c].end());
-  if (!look) return;
-  awake_.clear();
-  for (std::size_t c = 0; c < chunks; ++c) awake_.insert(awake_.end(), chunk_awake_[c].begin(), chunk_awake_[c].end());
 }
 
-void Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
-  dt_ = dt;
-  const double closing = 2 * dt * max_speed;  // of two nodes in a step
-  const double active_below = options_.activation + closing;
-  const bool look = look_due_ || steps_since_renewal_ >= renew_every || awake_below_ - 2 * since_look_ < active_below;
-  bool normals_due = look_due_ || steps_since_renewal_ % normals_every == 0;
-  if (look) {
-    awake_below_ = active_below + std::min(look_every * closing, 0.25 * options_.reach);
-    since_look_ = 0, look_due_ = false;
-    measure_motion(x);
-    if (steps_since_renewal_ >= renew_every || worn_out()) renew(x), normals_due = false;
+/// Impulses go back to their probes, where they outlive the constraint.
+void Contact::keep_impulses() {
+  for (const Constraint& c : constraints_) probes_[std::size_t(c.probe)].impulse = c.impulse;
+}
+
+/// `needed`: gap below which a pair must be in the solve of this step.
+void Contact::look(const std::vector<Vec3>& x, double needed) {
+  keep_impulses();
+  held_below_ = needed + std::min(look_every * closing_, look_within);
+  measure_motion(x);
+  since_look_ = 0;
+  if (steps_since_renewal_ >= renew_every || worn_out()) {
+    renew(x);
+  } else if (steps_since_normals_ >= normals_every) {
+    update_normals(x);
   }
-  if (normals_due) update_normals(x);
-  ++steps_since_renewal_;
-  if (look) {
-    constrain_all<true>(near_, x, dt, active_below);
+  constrain_all(x);
+  look_due_ = false;
+}
+
+bool Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
+  dt_ = dt, closing_ = 2 * dt * max_speed;
+  const double needed = options_.activation + closing_;
+  const bool looks = look_due_ || steps_since_renewal_ >= renew_every || held_below_ - 2 * since_look_ < needed;
+  if (looks) {
+    look(x, needed);
   } else {
-    constrain_all<false>(awake_, x, dt, active_below);
+    refresh(x);
   }
+  ++steps_since_renewal_, ++steps_since_normals_;
+  return looks;
 }
 
 double Contact::least_gap() const {

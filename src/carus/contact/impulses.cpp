@@ -1,59 +1,86 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 
 #include "carus/contact/contact.hpp"
+#include "carus/core/parallel.hpp"
 
 namespace carus::contact {
 
-/// The impulse acts on the node, its opposite on the facet.
-void Contact::apply(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v, std::vector<double>& rate) const {
+namespace {
+
+Vec3 relative(const Constraint& c, const std::vector<Vec3>& v) {
+  return v[c.node] - (c.w[0] * v[c.facet[0]] + c.w[1] * v[c.facet[1]] + c.w[2] * v[c.facet[2]]);
+}
+
+}  // namespace
+
+/// An impulse along the normal acts on the node, its opposite on the facet.
+void Contact::push(const Constraint& c, double impulse, std::vector<Vec3>& v, std::vector<double>& rate) const {
+  v[c.node] += impulse * c.response[0];
+  for (int k = 0; k < 3; ++k) v[c.facet[k]] += impulse * c.response[k + 1];
+  if (c.hinge_node >= 0) rate[c.hinge_node] += hinges_[c.hinge_node].inverse_inertia * c.lever_node * impulse;
+  if (c.hinge_facet >= 0) rate[c.hinge_facet] -= hinges_[c.hinge_facet].inverse_inertia * c.lever_facet * impulse;
+}
+
+/// A tangential impulse; hinges feel the normal ones alone.
+void Contact::shear(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v) const {
   v[c.node] += response(c.node, impulse);
   for (int k = 0; k < 3; ++k) v[c.facet[k]] -= c.w[k] * response(c.facet[k], impulse);
-  const double along = impulse.dot(c.n);
-  if (c.hinge_node >= 0) rate[c.hinge_node] += hinges_[c.hinge_node].inverse_inertia * c.lever_node * along;
-  if (c.hinge_facet >= 0) rate[c.hinge_facet] -= hinges_[c.hinge_facet].inverse_inertia * c.lever_facet * along;
+}
+
+/// Coulomb: the tangential impulse that stops the slip, at most friction times the normal one.
+void Contact::rub(Constraint& c, std::vector<Vec3>& v) const {
+  const Vec3 u = relative(c, v);
+  Vec3 slip = c.slip - c.mass * (u - u.dot(c.n) * c.n);
+  const double limit = double(c.friction) * c.impulse, size = slip.norm();
+  if (size > limit) slip *= limit / size;
+  shear(c, slip - c.slip, v);
+  c.slip = slip;
+}
+
+/// Returns the normal speed it found.
+double Contact::relax(Constraint& c, std::vector<Vec3>& v, std::vector<double>& rate) const {
+  double speed = c.n.dot(relative(c, v));
+  if (c.hinge_node >= 0) speed += rate[c.hinge_node] * c.lever_node;
+  if (c.hinge_facet >= 0) speed -= rate[c.hinge_facet] * c.lever_facet;
+  const double wanted = std::max(0.0, c.impulse + c.mass * (c.target - speed));
+  const double change = wanted - c.impulse;
+  c.impulse = wanted;
+  if (change != 0) push(c, change, v, rate);
+  if (c.friction > 0) rub(c, v);
+  return speed;
+}
+
+/// Most pairs that might touch do not: what the first sweep leaves further than `activation` apart at the end of the
+/// step is left alone by the others.
+void Contact::sweep(int part, int number, std::vector<Vec3>& v, std::vector<double>& rate) {
+  auto& live = live_[std::size_t(part)];
+  if (number > 0) {
+    for (const auto i : live) relax(constraints_[std::size_t(i)], v, rate);
+    return;
+  }
+  live.clear();
+  for (auto i = part_begin_[std::size_t(part)]; i < part_begin_[std::size_t(part) + 1]; ++i) {
+    Constraint& c = constraints_[i];
+    const double speed = relax(c, v, rate);
+    if (c.impulse > 0 || dt_ * (speed - c.target) < options_.activation) live.push_back(std::int32_t(i));
+  }
 }
 
 void Contact::solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate) {
-  const auto relative = [&](const Constraint& c) -> Vec3 {
-    return v[c.node] - (c.w[0] * v[c.facet[0]] + c.w[1] * v[c.facet[1]] + c.w[2] * v[c.facet[2]]);
+  const auto warm_start = [&](int part) {
+    for (auto i = part_begin_[std::size_t(part)]; i < part_begin_[std::size_t(part) + 1]; ++i)
+      if (constraints_[i].impulse > 0) push(constraints_[i], constraints_[i].impulse, v, hinge_rate);
   };
-  const auto normal_speed = [&](const Constraint& c) {
-    double s = c.n.dot(relative(c));
-    if (c.hinge_node >= 0) s += hinge_rate[c.hinge_node] * c.lever_node;
-    if (c.hinge_facet >= 0) s -= hinge_rate[c.hinge_facet] * c.lever_facet;
-    return s;
-  };
-  for (const Constraint& c : constraints_) {
-    if (c.impulse > 0) apply(c, c.impulse * c.n, v, hinge_rate);
+  warm_start(parts);
+  for (int number = 0; number < options_.sweeps; ++number) {
+    parallel::for_chunks(parts, 1, [&](std::size_t part, std::size_t, std::size_t) {
+      if (number == 0) warm_start(int(part));
+      sweep(int(part), number, v, hinge_rate);
+    });
+    sweep(parts, number, v, hinge_rate);
   }
-  const auto relax = [&](Constraint& c) {
-    const double speed = normal_speed(c), wanted = std::max(0.0, c.impulse + c.mass * (c.target - speed));
-    const double change = wanted - c.impulse;
-    c.impulse = wanted;
-    if (change != 0) apply(c, change * c.n, v, hinge_rate);
-    if (c.friction > 0) {
-      const Vec3 u = relative(c);
-      Vec3 slip = c.slip - c.mass * (u - u.dot(c.n) * c.n);
-      const double limit = double(c.friction) * c.impulse, size = slip.norm();
-      if (size > limit) slip *= limit / size;
-      apply(c, slip - c.slip, v, hinge_rate);
-      c.slip = slip;
-    }
-    return speed;
-  };
-  // Most pairs that might touch do not: what the first sweep leaves further than `activation` apart at the end of the
-  // step is left alone by the others.
-  live_.clear();
-  for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    Constraint& c = constraints_[i];
-    const double speed = relax(c);
-    if (c.impulse > 0 || dt_ * (speed - c.target) < options_.activation) live_.push_back(std::int32_t(i));
-  }
-  for (int sweep = 1; sweep < options_.sweeps; ++sweep) {
-    for (const auto i : live_) relax(constraints_[std::size_t(i)]);
-  }
-  for (const Constraint& c : constraints_) probes_[c.probe].impulse = c.impulse;
 }
 
 }  // namespace carus::contact

@@ -40,13 +40,21 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_;
 };
 
-/// Sums that a pass over a chunk of nodes leaves behind.
-struct NodeSums {
-  double external = 0, damping = 0, internal = 0, contact = 0, max_speed2 = 0;
+struct Work {
+  double external = 0, contact = 0, damping = 0, active = 0;
 };
 
-struct Work {
-  double external = 0, contact = 0, damping = 0, active = 0, internal = 0;
+/// What a pass over a chunk of nodes leaves behind.
+struct NodeSums {
+  double external = 0, damping = 0, contact = 0, max_speed2 = 0;
+};
+
+/// What a node's step needs to know of it.
+enum Trait : std::uint8_t {
+  fixed = 1,     ///< of rigid parts: does not move, or with a hinge
+  held = 2,      ///< cannot move along some directions
+  loaded = 4,    ///< an external force acts on it
+  touching = 8,  ///< in a constraint of contact: moves after the contact solve only
 };
 
 }  // namespace
@@ -74,13 +82,16 @@ struct Explicit::Impl {
   fem::State state, good;
   Work work, good_work;
   std::vector<Vec3> external_force, contact_impulse;
-  std::vector<Vec3> v_before, v_free;          // at the start of a step, and predicted without contact
+  std::vector<std::uint8_t> traits;       // per node, Trait bits
+  std::vector<double> carry, pull;        // per free node: v* = carry v + pull f, drag included
+  std::vector<std::int32_t> touched;      // nodes in constraints of contact
+  std::vector<Vec3> v_before, v_free;     // of those: at the start of a step, and predicted without contact
   std::vector<double> rate_before, rate_free;  // of the hinges
   int contact_samples = 0;
-  std::vector<NodeSums> sums;
+  std::vector<NodeSums> sums, touched_sums;  // per chunk
   std::vector<fem::KernelReport> reports;
   std::vector<double> pressures;
-  double max_speed = 0, hinge_speed = 0, least_gap = 0;
+  double max_speed = 0, hinge_speed = 0;
   int retraction_every = 1;
   bool loads_due = true;  // after every stop, so that a resumed run does what an uninterrupted one does
   double seconds[stage_count] = {};
@@ -109,6 +120,7 @@ struct Explicit::Impl {
     v_before = v_free = state.v;
     rate_before = rate_free = state.hinge_rate;
     sums.resize((state.x.size() + node_chunk - 1) / node_chunk);
+    touched_sums.resize(sums.size());
     pressures.assign(model.pressures.size(), 0.0);
   }
 
@@ -131,6 +143,25 @@ struct Explicit::Impl {
     for (const auto& h : model.hinges) {
       for (const auto n : h.nodes) inverse_mass[n].setZero(), inverse_mass_blocked[n].setZero();
     }
+    describe_nodes();
+  }
+
+  void describe_nodes() {
+    const std::size_t n = state.x.size();
+    traits.assign(n, 0), carry.assign(n, 0), pull.assign(n, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (inverse_mass[i].isZero()) {
+        traits[i] = fixed;
+        continue;
+      }
+      carry[i] = masses.scaled[i] / dragged_mass(i), pull[i] = dt / dragged_mass(i);
+      if (!inverse_mass_blocked[i].isZero() || inverse_mass[i].minCoeff() == 0) traits[i] = held;
+    }
+    for (const auto& load : model.pressures) {
+      for (const auto& t : load.surface)
+        for (const auto node : t) traits[node] |= loaded;
+    }
+    for (const auto& t : model.tethers) traits[t.node] |= loaded;
   }
 
   void make_elements() {
@@ -270,32 +301,63 @@ struct Explicit::Impl {
     });
   }
 
+  // Nodes that nothing touches move at once; the others wait for the contact solve in between.
+
+  void find_contacts() {
+    const Stopwatch watch(seconds[contact_search]);
+    if (!contact->detect(state.x, dt, max_speed)) return;
+    for (const auto n : touched) traits[n] &= std::uint8_t(~touching);
+    touched.clear();
+    const auto touch = [&](std::int32_t n) {
+      if (traits[n] & (fixed | touching)) return;
+      traits[n] |= touching;
+      touched.push_back(n);
+    };
+    for (const auto& c : contact->constraints()) {
+      touch(c.node);
+      for (const auto n : c.facet) touch(n);
+    }
+    std::sort(touched.begin(), touched.end());
+  }
+
+  Vec3 element_force(std::size_t i) const {
+    Vec3 f = Vec3::Zero();
+    for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
+      const float* g = blocks[std::size_t(shares[q].first)].f[std::size_t(shares[q].second)].v;
+      f += Vec3(g[0], g[1], g[2]);
+    }
+    return f;
+  }
+
   /// v* = (m v + dt f) / (m + dt drag m0): drag implicit, on the unscaled mass m0.
-  void predict_velocities() {
+  Vec3 predicted_velocity(std::size_t i) const {
+    Vec3 f = element_force(i);
+    if (traits[i] & loaded) f += external_force[i];
+    if (!(traits[i] & held)) return carry[i] * state.v[i] + pull[i] * f;
+    const Vec3 momentum = masses.scaled[i] * state.v[i] + dt * f;
+    const Vec3& blocked = inverse_mass_blocked[i];
+    return inverse_mass[i].cwiseProduct(momentum) - blocked.dot(momentum) * blocked;
+  }
+
+  /// Velocities without contact; what nothing touches is moved as well.
+  void predict() {
     const Stopwatch watch(seconds[nodes]);
-    parallel::for_chunks(state.x.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
+    parallel::for_chunks(state.x.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
+      NodeSums& s = sums[c] = {};
       for (std::size_t i = b; i < e; ++i) {
-        v_before[i] = v_free[i] = state.v[i];
-        if (inverse_mass[i].isZero()) continue;
-        Vec3 f = Vec3::Zero();
-        for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
-          const float* g = blocks[std::size_t(shares[q].first)].f[std::size_t(shares[q].second)].v;
-          f += Vec3(g[0], g[1], g[2]);
+        if (traits[i] & fixed) continue;
+        const Vec3 before = state.v[i], free = predicted_velocity(i);
+        state.v[i] = free;
+        if (traits[i] & touching) {
+          v_before[i] = before, v_free[i] = free;
+        } else {
+          move_node(i, before, free, s);
         }
-        Vec3& v = state.v[i];
-        const Vec3 momentum = masses.scaled[i] * v + dt * (f + external_force[i]);
-        const Vec3& held = inverse_mass_blocked[i];
-        v = inverse_mass[i].cwiseProduct(momentum) - held.dot(momentum) * held;
-        v_free[i] = v;
       }
     });
   }
 
   void solve_contact() {
-    {
-      const Stopwatch watch(seconds[contact_search]);
-      contact->detect(state.x, dt, max_speed);
-    }
     const Stopwatch watch(seconds[contact_solve]);
     turn_hinges_freely();
     contact->solve(state.v, state.hinge_rate);
@@ -304,7 +366,6 @@ struct Explicit::Impl {
       work.contact += dragged_inertia(model.hinges[h]) * (state.hinge_rate[h] - rate_free[h]) * mean;
       work.damping += dt * model.hinges[h].damping / scale * state.hinge_rate[h] * mean;
     }
-    least_gap = contact->least_gap();
     if (state.step % sample_contact_every == 0) {
       ++contact_samples;
       for (const auto& c : contact->constraints()) {
@@ -335,29 +396,48 @@ struct Explicit::Impl {
   /// Every force works along the mean velocity of the step, contact included; so the works add up to the change of
   /// kinetic energy. Measured before the contact solve, a resting contact would seem to take what the load only seems
   /// to give.
-  void book_work(std::size_t i, NodeSums& s) const {
-    const Vec3 mean = 0.5 * (state.v[i] + v_before[i]);
-    const double damping = dt * options.drag / scale * masses.unscaled[i] * state.v[i].dot(mean);
-    const double external = dt * external_force[i].dot(mean);
-    const double contact_work = dragged_mass(i) * (state.v[i] - v_free[i]).dot(mean);
-    s.damping += damping, s.external += external, s.contact += contact_work;
-    s.internal -= masses.scaled[i] * (state.v[i] - v_before[i]).dot(mean) + damping - external - contact_work;
+  void book_work(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s) const {
+    const Vec3 mean = 0.5 * (state.v[i] + before);
+    s.damping += dt * options.drag / scale * masses.unscaled[i] * state.v[i].dot(mean);
+    if (traits[i] & loaded) s.external += dt * external_force[i].dot(mean);
+    s.contact += dragged_mass(i) * (state.v[i] - free).dot(mean);
   }
 
-  void move() {
+  void move_node(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s) {
+    const double cap2 = options.max_node_speed * options.max_node_speed;
+    Vec3& v = state.v[i];
+    double v2 = v.squaredNorm();
+    if (v2 > cap2) v *= std::sqrt(cap2 / v2), v2 = cap2;
+    book_work(i, before, free, s);
+    s.max_speed2 = std::max(s.max_speed2, v2);
+    state.x[i] += dt * v;
+  }
+
+  void move_touched() {
     const Stopwatch watch(seconds[nodes]);
-    const double cap = options.max_node_speed;
-    parallel::for_chunks(state.x.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
-      NodeSums& s = sums[c] = {};
-      for (std::size_t i = b; i < e; ++i) {
-        Vec3& v = state.v[i];
-        double v2 = v.squaredNorm();
-        if (v2 > cap * cap) v *= cap / std::sqrt(v2), v2 = cap * cap;
-        book_work(i, s);
-        s.max_speed2 = std::max(s.max_speed2, v2);
-        state.x[i] += dt * v;
+    parallel::for_chunks(touched.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
+      NodeSums& s = touched_sums[c] = {};
+      for (std::size_t k = b; k < e; ++k) {
+        const auto i = std::size_t(touched[k]);
+        move_node(i, v_before[i], v_free[i], s);
       }
     });
+    turn_hinges();
+    double speed2 = hinge_speed * hinge_speed;
+    const auto add = [&](const NodeSums& s) {
+      work.external += s.external, work.damping += s.damping, work.contact += s.contact;
+      speed2 = std::max(speed2, s.max_speed2);
+    };
+    std::for_each(sums.begin(), sums.end(), add);
+    std::for_each_n(touched_sums.begin(), (touched.size() + node_chunk - 1) / node_chunk, add);
+    max_speed = std::sqrt(speed2);
+    contact->moved(dt * max_speed);
+    ++state.step;
+    state.time = double(state.step) * dt * scale;
+  }
+
+  void turn_hinges() {
+    hinge_speed = 0;
     for (std::size_t h = 0; h < model.hinges.size(); ++h) {
       const auto& hinge = model.hinges[h];
       state.hinge_angle[h] += dt * state.hinge_rate[h];
@@ -368,16 +448,6 @@ struct Explicit::Impl {
         hinge_speed = std::max(hinge_speed, r.norm() * std::abs(state.hinge_rate[h]));
       }
     }
-    double speed2 = 0;
-    for (const NodeSums& s : sums) {
-      work.internal += s.internal, work.external += s.external, work.damping += s.damping, work.contact += s.contact;
-      speed2 = std::max(speed2, s.max_speed2);
-    }
-    max_speed = std::max(std::sqrt(speed2), hinge_speed);
-    hinge_speed = 0;
-    contact->moved(dt * max_speed);
-    ++state.step;
-    state.time = double(state.step) * dt * scale;
   }
 
   void step() {
@@ -387,9 +457,10 @@ struct Explicit::Impl {
     loads_due = false;
     element_forces();
     check();
-    predict_velocities();
+    find_contacts();
+    predict();
     solve_contact();
-    move();
+    move_touched();
   }
 
   void check() {
@@ -412,7 +483,7 @@ struct Explicit::Impl {
 
   void keep() {
     state.rest_length = rest_length.rings();
-    state.internal = {work.external, work.contact, work.damping, work.active, work.internal, max_speed};
+    state.internal = {work.external, work.contact, work.damping, work.active, max_speed};
     contact->pause(state.x);
     const auto partners = contact->save();
     state.internal.insert(state.internal.end(), partners.begin(), partners.end());
@@ -428,8 +499,8 @@ struct Explicit::Impl {
 
   void restore_private() {
     const double* p = state.internal.data();
-    work = {p[0], p[1], p[2], p[3], p[4]}, max_speed = p[5];
-    p += 6;
+    work = {p[0], p[1], p[2], p[3]}, max_speed = p[4];
+    p += 5;
     contact->load(p, state.x);
     p += contact->save().size();
     for (auto& b : blocks) {
@@ -493,7 +564,7 @@ Observables Explicit::observe() const {
   o.external_work = s.work.external + tether_energy(s.model, s.state), o.contact_work = s.work.contact,
   o.damping_work = s.work.damping;
   o.active_work = s.work.active;
-  o.least_gap = s.least_gap;
+  o.least_gap = s.contact->least_gap();
   for (const auto& r : s.reports) o.min_J = std::min(o.min_J, double(r.min_J)), o.inverted += r.inverted;
   o.contact_force = s.contact_impulse;
   const double per = s.contact_samples ? 1 / (s.dt * s.contact_samples) : 0;
