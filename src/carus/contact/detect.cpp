@@ -35,6 +35,14 @@ Vec3 on_edge_of_sides(const Surface& s, const std::array<std::int32_t, 3>& v, co
   return mean;
 }
 
+/// Whether a neighbour may be as near as the facet that has the foot inside: the foot lies no further from one of its
+/// edges than twice the node from the facet.
+bool close_to_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& w, double area2, double squared) {
+  const double sides[3] = {(c - b).squaredNorm(), (a - c).squaredNorm(), (b - a).squaredNorm()};  // opposite to a, b, c
+  const double near2 = 4 * squared / area2;  // altitude_k = 2 area / side_k
+  return w[0] * w[0] < near2 * sides[0] || w[1] * w[1] < near2 * sides[1] || w[2] * w[2] < near2 * sides[2];
+}
+
 }  // namespace
 
 Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const std::vector<Vec3>& rest,
@@ -227,9 +235,11 @@ Contact::Foot Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
   };
   Foot best = foot_on(probe.triangle);
   for (int hop = 0; hop < 4; ++hop) {
-    if (best.w.minCoeff() > 0) break;  // inside the facet: nothing nearer among its neighbours
     const std::int32_t here = probe.triangle;
+    const mesh::Triangle& f = other.triangles[here];
     const Vec3 w = best.w;
+    if (w.minCoeff() > 0 && !close_to_edge(x[f[0]], x[f[1]], x[f[2]], w, other.facet_normal[here].squaredNorm(), best.squared))
+      break;
     for (int k = 0; k < 3; ++k) {
       if (w[k] <= 0) continue;  // only round the vertices that carry the foot
       const auto v = std::size_t(other.local[here][k]);
