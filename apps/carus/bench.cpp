@@ -157,7 +157,8 @@ void add_bench(CLI::App& app, int& status) {
   c->add_option("SCENARIO", a->scenario, "Scenario whose first steps are measured; scenarios/reference.yaml if silent");
   c->add_option("--steps", a->steps, "Steps of the birth; 2000 reach the first contraction")
       ->check(CLI::Range(1, 10000000));
-  c->add_option("--from", a->from, "Results folder of an unfinished run of the scenario: measure from its checkpoint on")
+  c->add_option("--from", a->from,
+                "Results folder of an unfinished run of the scenario: measure from its checkpoint on")
       ->check(CLI::ExistingDirectory);
   c->add_option("--repeats", a->repeats, "Repetitions of each measurement")->check(CLI::Range(1, 1000));
   c->add_option("--threads", a->threads, "Measure with one thread and with this many; 0: all")

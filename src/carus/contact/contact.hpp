@@ -66,15 +66,15 @@ struct alignas(64) Constraint {
   std::array<std::int32_t, 3> facet;
   std::array<double, 3> w;
   Vec3 n;
-  double mass;                  ///< effective mass [kg]
-  double target;                ///< least normal speed [m/s]
-  double impulse;               ///< [N s], >= 0
+  double mass;                   ///< effective mass [kg]
+  double target;                 ///< least normal speed [m/s]
+  double impulse;                ///< [N s], >= 0
   std::array<Vec3, 4> response;  ///< velocities that a unit impulse gives to the node and to the facet's corners [1/kg]
   // What the sweeps of a frictionless contact do not read.
-  double gap;                        ///< [m] on the smooth gap
-  double shift;                      ///< [m] gap = n.(x_node - sum w_k x_k) + shift, until the foot is found anew
-  double lever_node, lever_facet;    ///< axis.((p - o) x n) of the hinges
-  Vec3 slip;                         ///< tangential impulse [N s]
+  double gap;                      ///< [m] on the smooth gap
+  double shift;                    ///< [m] gap = n.(x_node - sum w_k x_k) + shift, until the foot is found anew
+  double lever_node, lever_facet;  ///< axis.((p - o) x n) of the hinges
+  Vec3 slip;                       ///< tangential impulse [N s]
   std::int32_t probe;
   std::int16_t hinge_node, hinge_facet;  ///< -1: none
   float friction;
@@ -158,10 +158,10 @@ class Contact {
   void look(const std::vector<Vec3>& x, double needed);
   void constrain_all(const std::vector<Vec3>& x);
   void constrain_chunk(std::size_t begin, std::size_t end, const std::vector<Vec3>& x, std::vector<Constraint>& out);
-  void gather_parts();
+  void gather_parts(const std::vector<Vec3>& x);
   void refresh(const std::vector<Vec3>& x);
   void keep_impulses();
-  void cut(const std::vector<Vec3>& x);
+  void cut(const std::vector<Vec3>& x, std::size_t chunks);
   [[nodiscard]] int part_of(const Constraint& c, const std::vector<Vec3>& x) const;
   [[nodiscard]] double target(double gap) const;
   void update_normals(const std::vector<Vec3>& x);
@@ -200,10 +200,11 @@ class Contact {
   std::array<std::size_t, parts + 2> part_begin_{};
   std::array<std::vector<std::int32_t>, parts + 1> live_;  ///< those that the first sweep left close to touching
   int cut_axis_ = 0;
+  std::vector<double> along_cut_;         ///< scratch
   std::array<double, parts - 1> cuts_{};  ///< [m] along the axis
-  double dt_ = 0, closing_ = 0;  ///< [s], [m]: what two nodes may near each other by in a step
+  double dt_ = 0, closing_ = 0;           ///< [s], [m]: what two nodes may near each other by in a step
   bool look_due_ = true;
-  double since_look_ = 0;   ///< [m] that the fastest node of all may have travelled since the last look
+  double since_look_ = 0;  ///< [m] that the fastest node of all may have travelled since the last look
   double held_below_ = 0;  ///< [m] gap below which the last look left constraints
   int steps_since_normals_ = never;
   int steps_since_renewal_ = never;

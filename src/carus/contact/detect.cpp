@@ -15,7 +15,7 @@ constexpr std::size_t probe_chunk = 256;
 constexpr std::size_t constraint_chunk = 512;
 constexpr int normals_every = 8;      // steps, about: normals turn slowly against the step
 constexpr int renew_every = 400;      // steps at most, so that folds find their new partner
-constexpr int look_every = 4;         // steps, about: fewer cost looks, more hold constraints that do not touch
+constexpr int look_every = 10;        // steps, about: fewer cost looks, more hold constraints that do not touch
 constexpr double look_within = 2e-4;  // [m] of travel: the foot on its facet and the normal there stay good for that
 constexpr double awake = -std::numeric_limits<double>::infinity();
 
@@ -171,22 +171,25 @@ void Contact::begin_stretch(const std::vector<Vec3>& x) {
     probes_[i].sleeps_until = awake;
     if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
   }
-  cut(x);
 }
 
-/// Cuts that share the nodes in contact out evenly, across the direction in which these reach farthest.
-void Contact::cut(const std::vector<Vec3>& x) {
-  if (near_.empty()) return;
+/// Cuts that share the constraints out evenly, across the direction in which they reach farthest.
+void Contact::cut(const std::vector<Vec3>& x, std::size_t chunks) {
   Eigen::AlignedBox3d box;
-  for (const auto i : near_) box.extend(x[probes_[std::size_t(i)].node]);
+  along_cut_.clear();
+  const auto for_each_node = [&](auto&& f) {
+    for (std::size_t k = 0; k < chunks; ++k)
+      for (const Constraint& c : chunk_constraints_[k]) f(x[c.node]);
+  };
+  for_each_node([&](const Vec3& p) { box.extend(p); });
+  if (box.isEmpty()) return;
   box.sizes().maxCoeff(&cut_axis_);
-  std::vector<double> at;
-  at.reserve(near_.size());
-  for (const auto i : near_) at.push_back(x[probes_[std::size_t(i)].node][cut_axis_]);
+  for_each_node([&](const Vec3& p) { along_cut_.push_back(p[cut_axis_]); });
+  auto first = along_cut_.begin();
   for (std::size_t c = 0; c < cuts_.size(); ++c) {
-    const auto nth = at.begin() + std::ptrdiff_t((c + 1) * at.size() / parts);
-    std::nth_element(at.begin(), nth, at.end());
-    cuts_[c] = *nth;
+    const auto nth = along_cut_.begin() + std::ptrdiff_t((c + 1) * along_cut_.size() / parts);
+    std::nth_element(first, nth, along_cut_.end());
+    cuts_[c] = *nth, first = nth;
   }
 }
 
@@ -238,7 +241,8 @@ Contact::Foot Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
     const std::int32_t here = probe.triangle;
     const mesh::Triangle& f = other.triangles[here];
     const Vec3 w = best.w;
-    if (w.minCoeff() > 0 && !close_to_edge(x[f[0]], x[f[1]], x[f[2]], w, other.facet_normal[here].squaredNorm(), best.squared))
+    if (w.minCoeff() > 0 &&
+        !close_to_edge(x[f[0]], x[f[1]], x[f[2]], w, other.facet_normal[here].squaredNorm(), best.squared))
       break;
     for (int k = 0; k < 3; ++k) {
       if (w[k] <= 0) continue;  // only round the vertices that carry the foot
@@ -372,10 +376,7 @@ void Contact::constrain_chunk(std::size_t begin, std::size_t end, const std::vec
     Probe& probe = probes_[std::size_t(near_[i])];
     const double so_far = travel(passes_[probe.pass]);
     if (probe.sleeps_until - so_far > held_below_) continue;
-    if (constrain(probe, x, c, clearance)) {
-      c.probe = near_[i], c.part = part_of(c, x);
-      out.push_back(c);
-    }
+    if (constrain(probe, x, c, clearance)) c.probe = near_[i], out.push_back(c);
     probe.sleeps_until = clearance > held_below_ ? so_far + clearance : awake;
   }
 }
@@ -384,15 +385,16 @@ void Contact::constrain_all(const std::vector<Vec3>& x) {
   parallel::for_chunks(near_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t chunk) {
     constrain_chunk(b, e, x, chunk_constraints_[chunk]);
   });
-  gather_parts();
+  gather_parts(x);
 }
 
 /// One list, by parts; within a part the order of the probes.
-void Contact::gather_parts() {
+void Contact::gather_parts(const std::vector<Vec3>& x) {
   const std::size_t chunks = (near_.size() + probe_chunk - 1) / probe_chunk;
+  cut(x, chunks);
   part_begin_.fill(0);
   for (std::size_t k = 0; k < chunks; ++k) {
-    for (const Constraint& c : chunk_constraints_[k]) ++part_begin_[std::size_t(c.part) + 1];
+    for (Constraint& c : chunk_constraints_[k]) c.part = part_of(c, x), ++part_begin_[std::size_t(c.part) + 1];
   }
   for (std::size_t p = 0; p <= parts; ++p) part_begin_[p + 1] += part_begin_[p];
   constraints_.resize(part_begin_.back());

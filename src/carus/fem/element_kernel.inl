@@ -234,11 +234,16 @@ KernelReport forces(const Batch* batches, std::size_t n, const KernelMaterial& m
   CARUS_ASSERT(false);
 }
 
+/// V = det Ds / 6: neither the rest shape is fetched for it, nor does an active strain change it.
 void volumes(const Batch* batches, std::size_t n, const Float4* x, float* current) {
   for (std::size_t e = 0; e < n; ++e) {
     const Batch& b = batches[e];
     for (int first = 0; first < lanes; first += width) {
-      const Lanes quarter = 0.25f * load(b.volume + first) * material::determinant(deformation_gradient(b, first, x));
+      const Nodal x0 = gather(x, b.node[0] + first), x1 = gather(x, b.node[1] + first),
+                  x2 = gather(x, b.node[2] + first), x3 = gather(x, b.node[3] + first);
+      const Tensor edges{x1.x - x0.x, x2.x - x0.x, x3.x - x0.x, x1.y - x0.y, x2.y - x0.y,
+                         x3.y - x0.y, x1.z - x0.z, x2.z - x0.z, x3.z - x0.z};
+      const Lanes quarter = load(b.volume + first) > Lanes{} ? material::determinant(edges) * (1.0f / 24) : Lanes{};
       for (int a = 0; a < 4; ++a) {
         for (int l = 0; l < width; ++l) current[b.node[a][first + l]] += quarter[l];
       }

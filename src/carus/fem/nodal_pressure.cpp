@@ -47,17 +47,16 @@ NodalPressure::NodalPressure(const Model& model, std::vector<Block>& blocks) {
   strain_.resize(nodes_.size());
 }
 
+void NodalPressure::add_volumes(Block& b) const {
+  std::fill(b.volume.begin(), b.volume.end(), 0.f);
+  for (std::size_t r = 0; r < b.runs.size(); ++r) {
+    if (b.pressure_begin[r] < 0) continue;
+    kernel().volumes(b.batches.data() + b.runs[r].begin, b.runs[r].end - b.runs[r].begin, b.x.data(),
+                     b.volume.data() + b.pressure_begin[r]);
+  }
+}
+
 void NodalPressure::update(std::vector<Block>& blocks) const {
-  if (!any()) return;
-  parallel::for_chunks(blocks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
-    Block& b = blocks[i];
-    std::fill(b.volume.begin(), b.volume.end(), 0.f);
-    for (std::size_t r = 0; r < b.runs.size(); ++r) {
-      if (b.pressure_begin[r] < 0) continue;
-      kernel().volumes(b.batches.data() + b.runs[r].begin, b.runs[r].end - b.runs[r].begin, b.x.data(),
-                       b.volume.data() + b.pressure_begin[r]);
-    }
-  });
   parallel::for_chunks(nodes_.size(), 1024, [&](std::size_t begin, std::size_t end, std::size_t) {
     for (std::size_t a = begin; a < end; ++a) {
       const Node& n = nodes_[a];

@@ -15,7 +15,10 @@ class NodalPressure {
   NodalPressure(const Model& model, std::vector<Block>& blocks);
 
   [[nodiscard]] bool any() const { return !nodes_.empty(); }
-  /// From the current block-local positions to Block::pressure. Two passes over what they touch; no allocation.
+  /// Volumes round the nodes of one block, from its local positions; of all blocks before `update`. Blocks may be done
+  /// side by side.
+  void add_volumes(Block& block) const;
+  /// From the volumes to Block::pressure.
   void update(std::vector<Block>& blocks) const;
   /// Volumetric energy of the averaged regions, sum of V0_a U(J_a) [J], of the last update.
   [[nodiscard]] double energy() const;

@@ -72,8 +72,8 @@ struct Explicit::Impl {
   std::vector<Vec3> inverse_mass, inverse_mass_blocked;
   std::vector<fem::Block> blocks;
   std::vector<fem::KernelMaterial> materials;
-  std::vector<std::int32_t> share_begin;                      // node -> its copies in the blocks
-  std::vector<std::pair<std::int32_t, std::int32_t>> shares;  // (block, local)
+  std::vector<std::int32_t> share_begin;  // node -> the forces of its copies in the blocks
+  std::vector<const fem::Float4*> shares;
   std::unique_ptr<fem::NodalPressure> nodal_pressure;
   fem::RestLength rest_length;
   std::vector<std::array<std::int32_t, 3>> retracting;  // per retracting element: block, batch, lane
@@ -82,10 +82,11 @@ struct Explicit::Impl {
   fem::State state, good;
   Work work, good_work;
   std::vector<Vec3> external_force, contact_impulse;
-  std::vector<std::uint8_t> traits;       // per node, Trait bits
-  std::vector<double> carry, pull;        // per free node: v* = carry v + pull f, drag included
-  std::vector<std::int32_t> touched;      // nodes in constraints of contact
-  std::vector<Vec3> v_before, v_free;     // of those: at the start of a step, and predicted without contact
+  std::vector<std::uint8_t> traits;            // per node, Trait bits
+  std::vector<double> carry, pull;             // per free node: v* = carry v + pull f, drag included
+  std::vector<double> drag_mass;               // per node: what drag takes from momentum in a step, over velocity [kg]
+  std::vector<std::int32_t> touched;           // nodes in constraints of contact
+  std::vector<Vec3> v_before, v_free;          // of those: at the start of a step, and predicted without contact
   std::vector<double> rate_before, rate_free;  // of the hinges
   int contact_samples = 0;
   std::vector<NodeSums> sums, touched_sums;  // per chunk
@@ -101,6 +102,7 @@ struct Explicit::Impl {
     total_steps = std::int64_t(std::ceil(o.pseudo_duration / o.time_step));
     dt = o.pseudo_duration / double(total_steps);
     masses = scaled_masses(model, dt, o.safety);
+    for (const double m0 : masses.unscaled) drag_mass.push_back(dt * o.drag / scale * m0);
     start_state();
     make_inverse_masses();
     make_elements();
@@ -126,7 +128,7 @@ struct Explicit::Impl {
 
   /// What an impulse meets within a step. Contact must see it too: with the bare mass, a resting contact would carry
   /// 1/(1 + dt drag) of the load.
-  double dragged_mass(std::size_t i) const { return masses.scaled[i] + dt * options.drag / scale * masses.unscaled[i]; }
+  double dragged_mass(std::size_t i) const { return masses.scaled[i] + drag_mass[i]; }
   double dragged_inertia(const fem::Hinge& h) const {
     return h.inertia + dt * h.damping / scale + dt * dt * h.stiffness;
   }
@@ -178,7 +180,7 @@ struct Explicit::Impl {
     shares.resize(std::size_t(count.back()));
     for (std::size_t b = 0; b < blocks.size(); ++b) {
       for (std::size_t l = 0; l < blocks[b].nodes.size(); ++l) {
-        shares[std::size_t(count[blocks[b].nodes[l]]++)] = {std::int32_t(b), std::int32_t(l)};
+        shares[std::size_t(count[blocks[b].nodes[l]]++)] = &blocks[b].f[l];
       }
     }
     find_retracting();
@@ -279,13 +281,13 @@ struct Explicit::Impl {
   void element_forces() {
     const Stopwatch watch(seconds[elements]);
     const auto& kernel = fem::kernel();
-    if (nodal_pressure->any()) {
-      parallel::for_chunks(blocks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) { gather(blocks[i]); });
-      nodal_pressure->update(blocks);
-    }
+    parallel::for_chunks(blocks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
+      gather(blocks[i]);
+      nodal_pressure->add_volumes(blocks[i]);
+    });
+    nodal_pressure->update(blocks);
     parallel::for_chunks(blocks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
       fem::Block& b = blocks[i];
-      if (!nodal_pressure->any()) gather(b);
       std::fill(b.f.begin(), b.f.end(), fem::Float4{{0, 0, 0, 0}});
       reports[i] = {};
       for (std::size_t r = 0; r < b.runs.size(); ++r) {
@@ -323,7 +325,7 @@ struct Explicit::Impl {
   Vec3 element_force(std::size_t i) const {
     Vec3 f = Vec3::Zero();
     for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
-      const float* g = blocks[std::size_t(shares[q].first)].f[std::size_t(shares[q].second)].v;
+      const float* g = shares[std::size_t(q)]->v;
       f += Vec3(g[0], g[1], g[2]);
     }
     return f;
@@ -396,11 +398,10 @@ struct Explicit::Impl {
   /// Every force works along the mean velocity of the step, contact included; so the works add up to the change of
   /// kinetic energy. Measured before the contact solve, a resting contact would seem to take what the load only seems
   /// to give.
-  void book_work(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s) const {
+  void book_work(std::size_t i, const Vec3& before, NodeSums& s) const {
     const Vec3 mean = 0.5 * (state.v[i] + before);
-    s.damping += dt * options.drag / scale * masses.unscaled[i] * state.v[i].dot(mean);
+    s.damping += drag_mass[i] * state.v[i].dot(mean);
     if (traits[i] & loaded) s.external += dt * external_force[i].dot(mean);
-    s.contact += dragged_mass(i) * (state.v[i] - free).dot(mean);
   }
 
   void move_node(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s) {
@@ -408,7 +409,8 @@ struct Explicit::Impl {
     Vec3& v = state.v[i];
     double v2 = v.squaredNorm();
     if (v2 > cap2) v *= std::sqrt(cap2 / v2), v2 = cap2;
-    book_work(i, before, free, s);
+    book_work(i, before, s);
+    if (v != free) s.contact += dragged_mass(i) * (v - free).dot(0.5 * (v + before));  // the cap's, too
     s.max_speed2 = std::max(s.max_speed2, v2);
     state.x[i] += dt * v;
   }
