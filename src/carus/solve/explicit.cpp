@@ -8,6 +8,7 @@
 #include "carus/contact/contact.hpp"
 #include "carus/core/error.hpp"
 #include "carus/core/parallel.hpp"
+#include "carus/fem/constraints.hpp"
 #include "carus/fem/element_block.hpp"
 #include "carus/fem/nodal_pressure.hpp"
 #include "carus/fem/pressure.hpp"
@@ -62,6 +63,8 @@ struct Explicit::Impl {
   // Of the mass with its implicit drag, m + dt drag m0: M^-1 = D - b b^T. D per axis, 0 where blocked; b = t/sqrt(m)
   // takes away a blocked direction t, 0 where there is none.
   std::vector<Vec3> inverse_mass, inverse_mass_blocked;
+  std::vector<std::uint8_t> constrained;       // per node, Blocked bits
+  std::vector<std::vector<double>> body_mass;  // per body force
   std::vector<fem::Block> blocks;
   std::vector<fem::KernelMaterial> materials;
   std::vector<std::int32_t> share_begin;                      // node -> its copies in the blocks
@@ -90,6 +93,8 @@ struct Explicit::Impl {
     total_steps = std::int64_t(std::ceil(o.pseudo_duration / o.time_step));
     dt = o.pseudo_duration / double(total_steps);
     masses = scaled_masses(model, dt, o.safety);
+    for (const auto& b : model.body_forces) body_mass.push_back(fem::lumped_mass(model, b.regions));
+    move_mass_of_ties();
     start_state();
     make_inverse_masses();
     make_elements();
@@ -119,13 +124,24 @@ struct Explicit::Impl {
     return h.inertia + dt * h.damping / scale + dt * dt * h.stiffness;
   }
 
+  /// T^T M T of x_s = sum w_k x_k, its rows summed: momentum is exact, and the critical step only grows.
+  void move_mass_of_ties() {
+    for (const auto& tie : model.ties) {
+      for (auto* m : {&masses.scaled, &masses.unscaled}) {
+        for (int k = 0; k < 3; ++k) (*m)[tie.facet[k]] += tie.weights[k] * (*m)[tie.node];
+        (*m)[tie.node] = 0;
+      }
+    }
+  }
+
   void make_inverse_masses() {
+    constrained = fem::constrained_axes(model);
     inverse_mass.assign(state.x.size(), Vec3::Zero());
     inverse_mass_blocked.assign(state.x.size(), Vec3::Zero());
     for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
       if (masses.scaled[i] <= 0) continue;  // nodes of rigid parts only
-      for (int k = 0; k < 3; ++k) inverse_mass[i][k] = (model.blocked[i] >> k) & 1 ? 0 : 1 / dragged_mass(i);
-      if (!model.blocked_direction.empty() && model.blocked[i] == fem::Blocked::none)
+      for (int k = 0; k < 3; ++k) inverse_mass[i][k] = (constrained[i] >> k) & 1 ? 0 : 1 / dragged_mass(i);
+      if (!model.blocked_direction.empty() && constrained[i] == fem::Blocked::none)
         inverse_mass_blocked[i] = model.blocked_direction[i] / std::sqrt(dragged_mass(i));
     }
     for (const auto& h : model.hinges) {
@@ -204,6 +220,7 @@ struct Explicit::Impl {
       const double out = tether.direction.dot(state.x[tether.node] - model.mesh.nodes[tether.node]);
       external_force[tether.node] -= tether.stiffness * out * tether.direction;
     }
+    fem::add_body_forces(model, body_mass, t, external_force);
   }
 
   /// Sets the stress-free shape of the retracting wall: F_e = F F_a^-1 = Ds (B F_a^-1); det F_a = 1 keeps the volume.
@@ -270,6 +287,15 @@ struct Explicit::Impl {
     });
   }
 
+  Vec3 internal_force(std::size_t i) const {
+    Vec3 f = Vec3::Zero();
+    for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
+      const float* g = blocks[std::size_t(shares[q].first)].f[std::size_t(shares[q].second)].v;
+      f += Vec3(g[0], g[1], g[2]);
+    }
+    return f;
+  }
+
   /// v* = (m v + dt f) / (m + dt drag m0): drag implicit, on the unscaled mass m0.
   void predict_velocities() {
     const Stopwatch watch(seconds[nodes]);
@@ -277,18 +303,68 @@ struct Explicit::Impl {
       for (std::size_t i = b; i < e; ++i) {
         v_before[i] = v_free[i] = state.v[i];
         if (inverse_mass[i].isZero()) continue;
-        Vec3 f = Vec3::Zero();
-        for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
-          const float* g = blocks[std::size_t(shares[q].first)].f[std::size_t(shares[q].second)].v;
-          f += Vec3(g[0], g[1], g[2]);
-        }
         Vec3& v = state.v[i];
-        const Vec3 momentum = masses.scaled[i] * v + dt * (f + external_force[i]);
+        const Vec3 momentum = masses.scaled[i] * v + dt * (internal_force(i) + external_force[i]);
         const Vec3& held = inverse_mass_blocked[i];
         v = inverse_mass[i].cwiseProduct(momentum) - held.dot(momentum) * held;
         v_free[i] = v;
       }
     });
+  }
+
+  /// What acts on a tied node acts on its facet.
+  void carry_ties() {
+    for (const auto& tie : model.ties) {
+      const Vec3 f = internal_force(std::size_t(tie.node)) + external_force[tie.node];
+      for (int k = 0; k < 3; ++k) {
+        const auto n = tie.facet[k];
+        const Vec3 impulse = dt * tie.weights[k] * f;
+        state.v[n] +=
+            inverse_mass[n].cwiseProduct(impulse) - inverse_mass_blocked[n].dot(impulse) * inverse_mass_blocked[n];
+        v_free[n] = state.v[n];
+      }
+    }
+  }
+
+  /// Imposed velocities, v = (x(t + dt) - x)/dt, and the work of what imposes them: r = m dv/dt + drag m0 v - f.
+  void impose_motions() {
+    const double t = double(state.step + 1) * dt * scale;
+    for (const auto& motion : model.motions) {
+      for (const auto n : motion.nodes) {
+        const Vec3 wanted = (fem::placed(motion, model.mesh.nodes[n], t) - state.x[n]) / dt;
+        const Vec3 f = internal_force(std::size_t(n)) + external_force[n];
+        Vec3& v = state.v[n];
+        for (int k = 0; k < 3; ++k) {
+          if (!((motion.axes >> k) & 1)) continue;
+          v[k] = v_free[n][k] = wanted[k];
+          const double r =
+              masses.scaled[n] * (v[k] - v_before[n][k]) / dt + options.drag / scale * masses.unscaled[n] * v[k] - f[k];
+          work.external += dt * r * 0.5 * (v[k] + v_before[n][k]);
+        }
+      }
+    }
+  }
+
+  void follow_ties() {
+    for (const auto& tie : model.ties) {
+      Vec3 v = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) v += tie.weights[k] * state.v[tie.facet[k]];
+      state.v[tie.node] = v_free[tie.node] = v;
+    }
+  }
+
+  /// Static: inertia is left out.
+  std::vector<Vec3> reactions(const std::vector<Vec3>& contact_force) const {
+    std::vector<Vec3> f(state.x.size());
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] = internal_force(i) + external_force[i] + contact_force[i];
+    for (const auto& tie : model.ties) {
+      for (int k = 0; k < 3; ++k) f[tie.facet[k]] += tie.weights[k] * f[tie.node];
+      f[tie.node].setZero();
+    }
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      for (int k = 0; k < 3; ++k) f[i][k] = (constrained[i] >> k) & 1 ? -f[i][k] : 0;
+    }
+    return f;
   }
 
   void solve_contact() {
@@ -388,7 +464,10 @@ struct Explicit::Impl {
     element_forces();
     check();
     predict_velocities();
+    carry_ties();
+    impose_motions();
     solve_contact();
+    follow_ties();
     move();
   }
 
@@ -498,6 +577,7 @@ Observables Explicit::observe() const {
   o.contact_force = s.contact_impulse;
   const double per = s.contact_samples ? 1 / (s.dt * s.contact_samples) : 0;
   for (Vec3& f : o.contact_force) f *= per;
+  o.reaction = s.reactions(o.contact_force);
   o.hinge_angle = s.state.hinge_angle;
   o.rest_length_mean = s.rest_length.mean();
   return o;
