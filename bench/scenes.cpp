@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scenes.hpp"
 
+#include "carus/mesh/shapes.hpp"
 #include "carus/solve/energy.hpp"
-#include "shapes.hpp"
 
 namespace carus::bench {
 
 fem::Model block(bool average_nodal_pressure) {
   fem::Model model;
-  model.mesh = shapes::box({0, 0, 0}, {0.1, 0.1, 0.1}, 20, 20, 21);
+  model.mesh = mesh::shapes::box({0, 0, 0}, {0.1, 0.1, 0.1}, 20, 20, 21);
   material::Material m;
   m.c10 = 30e3, m.poisson = 0.45, m.average_nodal_pressure = average_nodal_pressure;
   model.regions = {{"block", "block", m}};

@@ -21,6 +21,7 @@ void add_bench(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);
 void add_export(CLI::App& app, int& status);
 void add_serve(CLI::App& app, int& status);
+void add_verify(CLI::App& app, int& status);
 
 /// A scenario's anatomy, read from anatomy.from or meshed; throws InputError in builds that cannot mesh.
 anatomy::Anatomy build_anatomy(const scenario::Scenario& scenario);

@@ -22,18 +22,6 @@ namespace {
 std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-void open_log(const BirthOptions& o) {
-  std::vector<spdlog::sink_ptr> sinks{
-      std::make_shared<spdlog::sinks::basic_file_sink_mt>((o.out / "log.txt").string(), !o.resume)};
-  if (o.log_to_terminal) {
-    sinks.push_back(std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
-    sinks.back()->set_pattern("%^%v%$");
-  }
-  auto logger = std::make_shared<spdlog::logger>("carus", sinks.begin(), sinks.end());
-  logger->flush_on(spdlog::level::info);
-  spdlog::set_default_logger(logger);
-}
-
 void tell_plan(const scenario::Scenario& s, const fem::Model& model, const results::Engine::Facts& f) {
   spdlog::info("{}: {} elements, {} nodes", s.name, model.mesh.tets.size(), model.mesh.nodes.size());
   spdlog::info(
@@ -43,19 +31,21 @@ void tell_plan(const scenario::Scenario& s, const fem::Model& model, const resul
       100 * f.step.mass_scaled_fraction, f.labour_per_pseudo);
 }
 
-/// What stops a run before it starts belongs in its log too.
-template <class F>
-auto logged(F&& f) {
-  try {
-    return f();
-  } catch (const std::exception& e) {
-    spdlog::default_logger()->sinks()[0]->log({"carus", spdlog::level::err, e.what()});
-    spdlog::default_logger()->flush();
-    throw;
+}  // namespace
+
+void open_log(const std::filesystem::path& out, bool resume, bool to_terminal) {
+  std::vector<spdlog::sink_ptr> sinks{
+      std::make_shared<spdlog::sinks::basic_file_sink_mt>((out / "log.txt").string(), !resume)};
+  if (to_terminal) {
+    sinks.push_back(std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    sinks.back()->set_pattern("%^%v%$");
   }
+  auto logger = std::make_shared<spdlog::logger>("carus", sinks.begin(), sinks.end());
+  logger->flush_on(spdlog::level::info);
+  spdlog::set_default_logger(logger);
 }
 
-}  // namespace
+const std::atomic<bool>* stop_flag() { return &stop_requested; }
 
 void stop_on_signals() {
   // async-signal-safe: only a flag is set; the loop looks at it between stops.
@@ -64,7 +54,7 @@ void stop_on_signals() {
 
 results::Outcome birth(const scenario::Scenario& s, const BirthOptions& options) {
   results::prepare_folder(options.out, options.resume);
-  open_log(options);
+  open_log(options.out, options.resume, options.log_to_terminal);
   for (const auto& w : s.warnings) spdlog::warn("{}", w);
   spdlog::info("carus {} ({}): meshing", CARUS_VERSION, CARUS_COMMIT);
   const auto begin = std::chrono::steady_clock::now();

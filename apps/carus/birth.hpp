@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <spdlog/sinks/sink.h>
+#include <spdlog/spdlog.h>
+
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -22,6 +26,24 @@ struct BirthOptions {
 /// From a scenario to its results folder: meshes, assembles, solves, writes. Every command that runs a birth does it
 /// here. Throws InputError, which log.txt tells too.
 results::Outcome birth(const scenario::Scenario& scenario, const BirthOptions& options);
+
+/// From now on what is logged goes to log.txt in the folder, and to the terminal.
+void open_log(const std::filesystem::path& out, bool resume, bool to_terminal);
+
+/// What stops a run before it starts belongs in its log too.
+template <class F>
+auto logged(F&& f) {
+  try {
+    return f();
+  } catch (const std::exception& e) {
+    spdlog::default_logger()->sinks()[0]->log({"carus", spdlog::level::err, e.what()});
+    spdlog::default_logger()->flush();
+    throw;
+  }
+}
+
+/// Raised by the signals below.
+const std::atomic<bool>* stop_flag();
 
 /// From now on SIGINT and SIGTERM end a birth at its next stop, with a checkpoint.
 void stop_on_signals();

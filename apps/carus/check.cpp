@@ -4,11 +4,15 @@
 #include "app.hpp"
 #include "carus/core/error.hpp"
 #include "carus/scenario/assemble.hpp"
+#include "carus/scenario/model_scenario.hpp"
+#include "model.hpp"
 
 namespace carus::app {
 namespace {
 
 int check(const std::string& file, const std::vector<std::string>& overrides) {
+  if (scenario::kind_of(file, overrides) == scenario::Kind::model)
+    return check_model(scenario::load_model(file, overrides));
   const auto s = scenario::load(file, overrides);
   for (const auto& w : s.warnings) fmt::print("warning: {}\n", w);
   const auto anatomy = build_anatomy(s);

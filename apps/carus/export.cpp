@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "app.hpp"
+#include "carus/general/deck.hpp"
 #include "carus/report/trajectory.hpp"
 #include "carus/results/files.hpp"
 
@@ -52,11 +53,38 @@ int export_trajectory(const TrajectoryArguments& a) {
   return done;
 }
 
+struct DeckArguments {
+  std::string scenario, out;
+  std::vector<std::string> overrides;
+};
+
+int export_deck(const DeckArguments& a) {
+  const auto s = scenario::load_model(a.scenario, a.overrides);
+  const auto model = general::build(s, general::gather_meshes(s));
+  results::write_atomically(a.out, general::ccx_deck(s, model));
+  fmt::print("{}: {} elements, {} nodes\n", a.out, model.model.mesh.tets.size(), model.model.mesh.nodes.size());
+  return done;
+}
+
+void add_deck(CLI::App& parent, int& status) {
+  auto a = std::make_shared<DeckArguments>();
+  auto* c = parent.add_subcommand("ccx", "A general model as a deck for CalculiX, to be computed there too");
+  c->add_option("SCENARIO", a->scenario, "Scenario file (YAML) of kind model")->required();
+  c->add_option("--out", a->out, "The deck to write, FILE.inp")->required();
+  c->add_option("--set", a->overrides, "Override a key of the scenario, path.to.key=value; may be given again")
+      ->expected(1)
+      ->take_all();
+  c->footer(
+      "Example:\n  carus export ccx scenarios/models/cantilever.yaml --out /tmp/cantilever.inp && ccx /tmp/cantilever");
+  c->callback([a, &status] { status = export_deck(*a); });
+}
+
 }  // namespace
 
 void add_export(CLI::App& app, int& status) {
-  auto* c = app.add_subcommand("export", "Write a run's data for other programs");
+  auto* c = app.add_subcommand("export", "Write a run's data, or a model, for other programs");
   c->require_subcommand(1);
+  add_deck(*c, status);
   auto a = std::make_shared<TrajectoryArguments>();
   auto* t = c->add_subcommand("trajectory", "The head's path, resampled, for a trainer: CSV and JSON");
   t->add_option("DIR", a->folder, "Results folder of carus run")->required();

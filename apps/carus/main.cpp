@@ -40,6 +40,7 @@ int main(int argc, char** argv) {
   app::add_report(app, status);
   app::add_export(app, status);
   app::add_serve(app, status);
+  app::add_verify(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

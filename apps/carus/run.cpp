@@ -5,6 +5,8 @@
 
 #include "birth.hpp"
 #include "carus/core/error.hpp"
+#include "carus/scenario/model_scenario.hpp"
+#include "model.hpp"
 
 namespace carus::app {
 namespace {
@@ -32,6 +34,8 @@ int status_of(results::Outcome outcome) {
 int run(RunArguments a) {
   if (a.frames >= 0) a.overrides.push_back(fmt::format("output.frames={}", a.frames));
   if (a.threads > 0) a.overrides.push_back(fmt::format("numerics.threads={}", a.threads));
+  if (scenario::kind_of(a.scenario, a.overrides) == scenario::Kind::model)
+    return run_model(scenario::load_model(a.scenario, a.overrides), a.out, a.resume);
   const auto s = scenario::load(a.scenario, a.overrides);
   ProgressLine line;
   BirthOptions o;
@@ -45,7 +49,7 @@ int run(RunArguments a) {
 
 void add_run(CLI::App& app, int& status) {
   auto a = std::make_shared<RunArguments>();
-  auto* c = app.add_subcommand("run", "Run a birth and write its results folder");
+  auto* c = app.add_subcommand("run", "Run a birth, or a general model, and write its results folder");
   c->add_option("SCENARIO", a->scenario, "Scenario file (YAML)")->required();
   c->add_option("--out", a->out, "Results folder; what an earlier run left in it is replaced")->required();
   c->add_option("--threads", a->threads, "Threads; 0: all. The results do not depend on it")
@@ -61,6 +65,7 @@ void add_run(CLI::App& app, int& status) {
       "  carus run scenarios/reference.yaml --out out/reference\n"
       "  carus run scenarios/reference.yaml --out out/coarse --set resolution=coarse --set fetus.position=LOA\n"
       "  carus run scenarios/reference.yaml --out out/reference --resume\n"
+      "  carus run scenarios/models/cantilever.yaml --out out/cantilever\n"
       "Ctrl-C writes a checkpoint and exits with status 4.");
   c->callback([a, &status] {
     stop_on_signals();

@@ -48,6 +48,31 @@ struct PressureLoad {
   Vec3 direction = Vec3::Zero();             ///< unit, where the push goes
 };
 
+/// Places imposed on nodes by time: X goes to point + R(angle) (X - point) + displacement, on the axes named. All axes
+/// of all nodes of a rigid region make it a rigid body that is moved.
+struct Motion {
+  std::string name;
+  std::vector<std::int32_t> nodes;
+  std::uint8_t axes = Blocked::all;            ///< Blocked bits: the components that are imposed
+  std::function<Vec3(double t)> displacement;  ///< [m], t in s of labour; empty: none
+  std::function<double(double t)> angle;       ///< [rad] about `axis` through `point`; empty: none
+  Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
+};
+
+/// A force per mass, e.g. gravity, on some regions.
+struct BodyForce {
+  std::string name;
+  std::vector<std::int32_t> regions;           ///< empty: all
+  std::function<Vec3(double t)> acceleration;  ///< [m/s^2], t in s of labour
+};
+
+/// A node glued to a facet, x = sum w_k x_k; it lies there at rest. The facet's nodes are glued to nothing themselves.
+struct Tie {
+  std::int32_t node;
+  mesh::Triangle facet;
+  Vec3 weights;  ///< >= 0, sum 1
+};
+
 /// One surface that can touch others; nodes and facets of one body.
 struct ContactSurface {
   std::string name;
@@ -85,6 +110,9 @@ struct Model {
   std::vector<Hinge> hinges;
   std::vector<Tether> tethers;
   std::vector<PressureLoad> pressures;
+  std::vector<BodyForce> body_forces;
+  std::vector<Motion> motions;
+  std::vector<Tie> ties;
   std::vector<ContactSurface> contact_surfaces;
   std::vector<ContactPair> contact_pairs;
   Retraction retraction;

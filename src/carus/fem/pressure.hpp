@@ -19,4 +19,20 @@ inline void add_pressure_forces(const PressureLoad& load, double p, const std::v
   }
 }
 
+/// y += K u with the symmetric part of K = -df/dx of those forces. On a closed surface under one pressure K is
+/// symmetric itself: then the load has a potential, p times the enclosed volume.
+inline void add_pressure_stiffness(const PressureLoad& load, double p, const std::vector<Vec3>& x,
+                                   const std::vector<Vec3>& u, std::vector<Vec3>& y) {
+  const auto along = [&](const Vec3& g) { return load.directed ? Vec3(g.dot(load.direction) * load.direction) : g; };
+  for (const mesh::Triangle& t : load.surface) {
+    const Vec3 a = x[t[1]] - x[t[0]], b = x[t[2]] - x[t[0]];
+    const Vec3 g = p / 12 * along((u[t[1]] - u[t[0]]).cross(b) + a.cross(u[t[2]] - u[t[0]]));
+    const Vec3 s = p / 12 * along(u[t[0]] + u[t[1]] + u[t[2]]);
+    const Vec3 g1 = b.cross(s), g2 = s.cross(a);
+    y[t[0]] += g - g1 - g2;
+    y[t[1]] += g + g1;
+    y[t[2]] += g + g2;
+  }
+}
+
 }  // namespace carus::fem

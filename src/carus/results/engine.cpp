@@ -28,7 +28,11 @@ std::unique_ptr<Engine> make_engine(const scenario::Scenario& scenario, const fe
   if (scenario.solver != scenario::SolverKind::explicit_dynamics) {
     throw InputError(scenario.file + ": solver.kind: implicit is not in this build; allowed: explicit");
   }
-  return std::make_unique<ExplicitEngine>(model, scenario::explicit_options(scenario));
+  return make_engine(model, scenario::explicit_options(scenario));
+}
+
+std::unique_ptr<Engine> make_engine(const fem::Model& model, const solve::ExplicitOptions& options) {
+  return std::make_unique<ExplicitEngine>(model, options);
 }
 
 }  // namespace carus::results

@@ -32,5 +32,7 @@ class Engine {
 
 /// The solver that the scenario names. Throws InputError if this build has none of that kind.
 std::unique_ptr<Engine> make_engine(const scenario::Scenario& scenario, const fem::Model& model);
+/// The explicit solver with these options.
+std::unique_ptr<Engine> make_engine(const fem::Model& model, const solve::ExplicitOptions& options);
 
 }  // namespace carus::results

@@ -31,7 +31,8 @@ Frames::Frames(std::filesystem::path folder, const fem::Model& model, const obse
   write_index();
 }
 
-void Frames::write(const fem::State& state, const std::vector<Vec3>& contact_force) {
+void Frames::write(const fem::State& state, const std::vector<Vec3>& contact_force,
+                   const std::function<void(vtkUnstructuredGrid&)>& more) {
   // A grid of its own for every frame: VTK keeps notes in arrays that it has written once, and a frame must not tell
   // which came before.
   const auto owned = tet_grid(state.x, model_.mesh.tets);
@@ -49,6 +50,7 @@ void Frames::write(const fem::State& state, const std::vector<Vec3>& contact_for
   const auto strain = strain_.field(state.x);
   set_scalars(*grid.GetCellData(), "J", strain.J);
   set_scalars(*grid.GetCellData(), "max_stretch", strain.stretch);
+  if (more) more(grid);
   write_atomically(folder_ / "frames" / fmt::format("frame_{:04}.vtu", times_.size()),
                    [&](const std::filesystem::path& file) { write_vtu(grid, file); });
   times_.push_back(state.time);

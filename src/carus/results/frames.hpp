@@ -2,11 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "carus/fem/model.hpp"
 #include "carus/observe/strain.hpp"
+
+class vtkUnstructuredGrid;
 
 namespace carus::results {
 
@@ -20,7 +23,9 @@ class Frames {
   /// `times`: of frames that are already there (resume). `labour_per_pseudo`: seconds of labour in one of pseudo-time.
   Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain, double labour_per_pseudo,
          std::vector<double> times = {});
-  void write(const fem::State& state, const std::vector<Vec3>& contact_force);
+  /// `more` may add fields of its own.
+  void write(const fem::State& state, const std::vector<Vec3>& contact_force,
+             const std::function<void(vtkUnstructuredGrid&)>& more = {});
   [[nodiscard]] const std::vector<double>& times() const { return times_; }  ///< [s of labour]
 
  private:

@@ -28,8 +28,11 @@ void rows(const Key& key, const std::string& name, std::string& out) {
     const std::string below = name.empty() ? child.name : name + "." + child.name;
     if (child.type == Type::object)
       rows(child, below, out);
-    else if (child.type == Type::array)
+    else if (child.type == Type::array && child.children.front().type == Type::object)
       rows(child.children.front(), below + "[]", out);
+    else if (child.type == Type::array)
+      out += fmt::format("| `{}[]` |  | {} |  | {} |\n", below, cell(allowed(child.children.front())),
+                         cell(child.description));
     else
       out += row(child, below);
   }
@@ -56,26 +59,37 @@ void materials(const Key& key, std::string& out) {
 
 }  // namespace
 
-std::string schema_markdown() {
-  const Key& root = schema();
-  std::string out = "# Scenario keys\n\nGenerated from `schema/scenario.schema.json`; do not edit. " +
-                    root.description + "\n\n## Top level\n\n" + head;
+namespace {
+
+std::string markdown(const Key& root, const std::string& intro) {
+  std::string out = intro + root.description + "\n\n## Top level\n\n" + head;
   for (const Key& section : root.children)
-    if (section.type != Type::object && section.type != Type::array)
-      out += row(section, section.name);
-    else if (section.type == Type::array)
-      rows(section.children.front(), section.name + "[]", out);
+    if (section.type != Type::object && section.type != Type::array) out += row(section, section.name);
   for (const Key& section : root.children) {
-    if (section.type != Type::object) continue;
+    if (section.type != Type::object && section.type != Type::array) continue;
     out += fmt::format("\n## {}\n\n", section.name);
     if (section.name == "materials") {
       materials(section, out);
       continue;
     }
     out += fmt::format("{}\n\n{}", section.description, head);
-    rows(section, section.name, out);
+    if (section.type == Type::array)
+      rows(section.children.front(), section.name + "[]", out);
+    else
+      rows(section, section.name, out);
   }
   return out;
+}
+
+}  // namespace
+
+std::string schema_markdown() {
+  return markdown(schema(), "# Scenario keys\n\nGenerated from `schema/scenario.schema.json`; do not edit. ");
+}
+
+std::string model_schema_markdown() {
+  return markdown(model_schema(),
+                  "# Keys of a general model\n\nGenerated from `schema/model.schema.json`; do not edit. ");
 }
 
 }  // namespace carus::scenario

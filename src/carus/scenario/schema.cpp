@@ -15,7 +15,8 @@ namespace carus::scenario {
 
 namespace embedded {
 extern const char* const scenario_schema;
-}
+extern const char* const model_schema;
+}  // namespace embedded
 
 namespace {
 
@@ -43,8 +44,10 @@ Type type_of(const Json& node) {
 /// referred one's.
 Key compile(const Json& root, const std::string& name, const Json& node, const Json& override_default) {
   if (node.contains("$ref")) {
-    const std::string pointer = node.at("$ref").get<std::string>().substr(1);
-    Json referred = root.at(Json::json_pointer(pointer));
+    // "#/definitions/x" of this file, or of the birth's, where the general model takes its materials from.
+    const std::string reference = node.at("$ref");
+    const std::string pointer = reference.substr(reference.find('#') + 1);
+    Json referred = (reference.starts_with('#') ? root : Json::parse(schema_json())).at(Json::json_pointer(pointer));
     if (node.contains("description")) referred["description"] = node.at("description");
     return compile(root, name, referred, node.value("default", Json()));
   }
@@ -117,6 +120,16 @@ const Key& schema() {
   return root;
 }
 
+const char* model_schema_json() { return embedded::model_schema; }
+
+const Key& model_schema() {
+  static const Key root = [] {
+    const Json json = Json::parse(model_schema_json());
+    return compile(json, "", json, Json());
+  }();
+  return root;
+}
+
 std::string allowed(const Key& key) {
   switch (key.type) {
     case Type::object: {
@@ -147,7 +160,7 @@ std::vector<Leaf> leaves(const Key& root) {
   return out;
 }
 
-std::string nearest_key(const std::string& path) {
+std::string nearest_key(const std::string& path, const Key& root) {
   std::string plain;  // without the indices of items
   for (bool index = false; const char c : path) {
     if (c == ']') index = false;
@@ -160,7 +173,7 @@ std::string nearest_key(const std::string& path) {
   };
   const auto [parent, name] = split(plain);
   std::vector<Leaf> known;
-  collect(schema(), "", true, known);
+  collect(root, "", true, known);
   const std::string* best = nullptr;
   std::size_t least = 0;
   for (const Leaf& leaf : known) {

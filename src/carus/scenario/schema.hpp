@@ -28,8 +28,10 @@ struct Key {
   std::vector<Key> children;  ///< of an object its keys in the schema's order, of an array the one form of its items
 };
 
-const Key& schema();        ///< built once from the embedded file; thread-safe
+const Key& schema();        ///< of a birth, built once from the embedded file; thread-safe
 const char* schema_json();  ///< its text
+const Key& model_schema();  ///< of a general model: schema/model.schema.json
+const char* model_schema_json();
 
 /// "30 mm to 80 mm", "true or false", "OA, LOA, ...": what a message and the reference call allowed.
 std::string allowed(const Key& key);
@@ -42,11 +44,13 @@ struct Leaf {
 std::vector<Leaf> leaves(const Key& root);
 
 /// The known key nearest to an unknown one: by edit distance of the whole path, or of the name with siblings preferred.
-std::string nearest_key(const std::string& path);
+std::string nearest_key(const std::string& path, const Key& root = schema());
 /// The nearest of some words.
 std::string nearest_word(const std::string& word, const std::vector<std::string>& words);
 
 /// docs/reference/scenario.md: every key with unit, bounds, default and source.
 std::string schema_markdown();
+/// docs/reference/model.md: the same of a general model.
+std::string model_schema_markdown();
 
 }  // namespace carus::scenario

@@ -51,8 +51,8 @@ std::string shown(const Raw& raw) {
 
 class Settler {
  public:
-  Settler(Settings& settings, Problems& problems, Problems& warnings)
-      : settings_(settings), problems_(problems), warnings_(warnings) {}
+  Settler(const Key& root, Settings& settings, Problems& problems, Problems& warnings)
+      : root_(root), settings_(settings), problems_(problems), warnings_(warnings) {}
 
   /// `raw` is null where the user is silent.
   void settle(const Key& key, const std::string& path, const Raw* raw) {
@@ -87,7 +87,7 @@ class Settler {
         if (std::none_of(key.children.begin(), key.children.end(),
                          [&](const Key& child) { return child.name == name; }))
           problems_.push_back(fmt::format("{}: {}: unknown key; did you mean {}?", first_file(value), below(name),
-                                          nearest_key(below(name))));
+                                          nearest_key(below(name), root_)));
     for (const Key& child : key.children)
       settle(child, below(child.name), raw == nullptr ? nullptr : raw->find(child.name));
   }
@@ -156,6 +156,7 @@ class Settler {
     settings_.values[path] = si;
   }
 
+  const Key& root_;
   Settings& settings_;
   Problems& problems_;
   Problems& warnings_;
@@ -163,9 +164,9 @@ class Settler {
 
 }  // namespace
 
-Settings settle(const Raw& root, Problems& problems, Problems& warnings) {
+Settings settle(const Raw& root, Problems& problems, Problems& warnings, const Key& keys) {
   Settings settings;
-  Settler(settings, problems, warnings).settle(schema(), "", &root);
+  Settler(keys, settings, problems, warnings).settle(keys, "", &root);
   return settings;
 }
 

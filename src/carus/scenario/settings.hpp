@@ -19,6 +19,9 @@ struct Settings {
 
 /// Checks what was written against the schema, converts units once and fills in the defaults. Each problem reads
 /// "FILE: key.path: VALUE is ...; allowed ...; hint"; a value outside what its source covers is a warning.
-Settings settle(const Raw& root, Problems& problems, Problems& warnings);
+Settings settle(const Raw& root, Problems& problems, Problems& warnings, const Key& keys = schema());
+
+/// Every key of `keys` with its value and unit, as YAML; parses back to the same settings.
+std::string settings_yaml(const Settings& settings, const Key& keys);
 
 }  // namespace carus::scenario

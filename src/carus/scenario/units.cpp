@@ -45,6 +45,7 @@ constexpr std::array table{
     Unit{"N m s/deg", "rotational damping", 1 / units::deg},
     Unit{"m/s", "speed", 1},
     Unit{"mm/s", "speed", units::mm},
+    Unit{"m/s^2", "acceleration", 1},
     Unit{"1/s", "rate", 1},
     Unit{"1/min", "rate", 1 / units::minute},
 };

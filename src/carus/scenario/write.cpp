@@ -45,6 +45,10 @@ class Emitter {
     const std::string indent(2 * depth, ' ');
     for (const Key& child : key.children) {
       if (path.empty() && child.name == "extends") continue;  // all that was inherited is here
+      if (path.empty() && child.name == "kind") {
+        text_ += fmt::format("kind: {}\n", child.fallback);
+        continue;
+      }
       const std::string below = path.empty() ? child.name : path + "." + child.name;
       if (child.type == Type::object) {
         text_ += fmt::format("{}{}:\n", indent, child.name);
@@ -80,17 +84,21 @@ class Emitter {
   }
 
  private:
-  /// Items are flat maps: [{g: 0.5, tau: 150 s}].
+  /// Flow style: [{g: 0.5, tau: 150 s}], [1 mm, 2 mm, 3 mm].
   [[nodiscard]] std::string list(const Key& key, const std::string& path) const {
     std::vector<std::string> items;
-    for (std::size_t i = 0; i < settings_.sizes.at(path); ++i) {
-      std::vector<std::string> members;
-      for (const Key& child : key.children.front().children)
-        members.push_back(
-            fmt::format("{}: {}", child.name, value(child, fmt::format("{}[{}].{}", path, i, child.name))));
-      items.push_back(fmt::format("{{{}}}", enumerated(members)));
-    }
+    for (std::size_t i = 0; i < settings_.sizes.at(path); ++i)
+      items.push_back(flow(key.children.front(), fmt::format("{}[{}]", path, i)));
     return fmt::format("[{}]", enumerated(items));
+  }
+
+  [[nodiscard]] std::string flow(const Key& key, const std::string& path) const {
+    if (key.type == Type::array) return list(key, path);
+    if (key.type != Type::object) return value(key, path);
+    std::vector<std::string> members;
+    for (const Key& child : key.children)
+      members.push_back(fmt::format("{}: {}", child.name, flow(child, path + "." + child.name)));
+    return fmt::format("{{{}}}", enumerated(members));
   }
 
   const Settings& settings_;
@@ -111,13 +119,17 @@ std::map<std::string, std::string> anatomy_settings(const Scenario& scenario) {
   return out;
 }
 
+std::string settings_yaml(const Settings& settings, const Key& keys) {
+  Emitter emitter(settings);
+  emitter.object(keys, "", 0);
+  return emitter.text();
+}
+
 std::string resolved_yaml(const Scenario& scenario) {
   Scenario copy = scenario;  // a visitor may write; this one only reads
   Collector collector;
   bind(collector, copy);
-  Emitter emitter(collector.settings);
-  emitter.object(schema(), "", 0);
-  return emitter.text();
+  return settings_yaml(collector.settings, schema());
 }
 
 }  // namespace carus::scenario

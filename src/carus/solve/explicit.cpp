@@ -8,6 +8,7 @@
 #include "carus/contact/contact.hpp"
 #include "carus/core/error.hpp"
 #include "carus/core/parallel.hpp"
+#include "carus/fem/constraints.hpp"
 #include "carus/fem/element_block.hpp"
 #include "carus/fem/nodal_pressure.hpp"
 #include "carus/fem/pressure.hpp"
@@ -54,7 +55,7 @@ enum Trait : std::uint8_t {
   fixed = 1,     ///< of rigid parts: does not move, or with a hinge
   held = 2,      ///< cannot move along some directions
   loaded = 4,    ///< an external force acts on it
-  touching = 8,  ///< in a constraint of contact: moves after the contact solve only
+  touching = 8,  ///< in a constraint of contact, or led: moves after the contact solve only
 };
 
 }  // namespace
@@ -70,6 +71,8 @@ struct Explicit::Impl {
   // Of the mass with its implicit drag, m + dt drag m0: M^-1 = D - b b^T. D per axis, 0 where blocked; b = t/sqrt(m)
   // takes away a blocked direction t, 0 where there is none.
   std::vector<Vec3> inverse_mass, inverse_mass_blocked;
+  std::vector<std::uint8_t> constrained;       // per node, Blocked bits
+  std::vector<std::vector<double>> body_mass;  // per body force
   std::vector<fem::Block> blocks;
   std::vector<fem::KernelMaterial> materials;
   std::vector<std::int32_t> share_begin;  // node -> the forces of its copies in the blocks
@@ -85,7 +88,8 @@ struct Explicit::Impl {
   std::vector<std::uint8_t> traits;            // per node, Trait bits
   std::vector<double> carry, pull;             // per free node: v* = carry v + pull f, drag included
   std::vector<double> drag_mass;               // per node: what drag takes from momentum in a step, over velocity [kg]
-  std::vector<std::int32_t> touched;           // nodes in constraints of contact
+  std::vector<std::int32_t> led;       // nodes that ties or imposed motions move
+  std::vector<std::int32_t> touched;   // those, and nodes in constraints of contact
   std::vector<Vec3> v_before, v_free;          // of those: at the start of a step, and predicted without contact
   std::vector<double> rate_before, rate_free;  // of the hinges
   int contact_samples = 0;
@@ -102,6 +106,8 @@ struct Explicit::Impl {
     total_steps = std::int64_t(std::ceil(o.pseudo_duration / o.time_step));
     dt = o.pseudo_duration / double(total_steps);
     masses = scaled_masses(model, dt, o.safety);
+    for (const auto& b : model.body_forces) body_mass.push_back(fem::lumped_mass(model, b.regions));
+    move_mass_of_ties();
     for (const double m0 : masses.unscaled) drag_mass.push_back(dt * o.drag / scale * m0);
     start_state();
     make_inverse_masses();
@@ -133,13 +139,24 @@ struct Explicit::Impl {
     return h.inertia + dt * h.damping / scale + dt * dt * h.stiffness;
   }
 
+  /// T^T M T of x_s = sum w_k x_k, its rows summed: momentum is exact, and the critical step only grows.
+  void move_mass_of_ties() {
+    for (const auto& tie : model.ties) {
+      for (auto* m : {&masses.scaled, &masses.unscaled}) {
+        for (int k = 0; k < 3; ++k) (*m)[tie.facet[k]] += tie.weights[k] * (*m)[tie.node];
+        (*m)[tie.node] = 0;
+      }
+    }
+  }
+
   void make_inverse_masses() {
+    constrained = fem::constrained_axes(model);
     inverse_mass.assign(state.x.size(), Vec3::Zero());
     inverse_mass_blocked.assign(state.x.size(), Vec3::Zero());
     for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
       if (masses.scaled[i] <= 0) continue;  // nodes of rigid parts only
-      for (int k = 0; k < 3; ++k) inverse_mass[i][k] = (model.blocked[i] >> k) & 1 ? 0 : 1 / dragged_mass(i);
-      if (!model.blocked_direction.empty() && model.blocked[i] == fem::Blocked::none)
+      for (int k = 0; k < 3; ++k) inverse_mass[i][k] = (constrained[i] >> k) & 1 ? 0 : 1 / dragged_mass(i);
+      if (!model.blocked_direction.empty() && constrained[i] == fem::Blocked::none)
         inverse_mass_blocked[i] = model.blocked_direction[i] / std::sqrt(dragged_mass(i));
     }
     for (const auto& h : model.hinges) {
@@ -164,6 +181,13 @@ struct Explicit::Impl {
         for (const auto node : t) traits[node] |= loaded;
     }
     for (const auto& t : model.tethers) traits[t.node] |= loaded;
+    if (!model.body_forces.empty())
+      for (auto& t : traits) t |= loaded;
+    for (const auto& motion : model.motions) led.insert(led.end(), motion.nodes.begin(), motion.nodes.end());
+    for (const auto& tie : model.ties) {
+      led.push_back(tie.node);
+      led.insert(led.end(), tie.facet.begin(), tie.facet.end());
+    }
   }
 
   void make_elements() {
@@ -237,6 +261,7 @@ struct Explicit::Impl {
       const double out = tether.direction.dot(state.x[tether.node] - model.mesh.nodes[tether.node]);
       external_force[tether.node] -= tether.stiffness * out * tether.direction;
     }
+    fem::add_body_forces(model, body_mass, t, external_force);
   }
 
   /// Sets the stress-free shape of the retracting wall: F_e = F F_a^-1 = Ds (B F_a^-1); det F_a = 1 keeps the volume.
@@ -311,18 +336,22 @@ struct Explicit::Impl {
     for (const auto n : touched) traits[n] &= std::uint8_t(~touching);
     touched.clear();
     const auto touch = [&](std::int32_t n) {
-      if (traits[n] & (fixed | touching)) return;
+      if (traits[n] & touching) return;
       traits[n] |= touching;
       touched.push_back(n);
     };
+    std::for_each(led.begin(), led.end(), touch);
+    const auto touch_free = [&](std::int32_t n) {
+      if (!(traits[n] & fixed)) touch(n);
+    };
     for (const auto& c : contact->constraints()) {
-      touch(c.node);
-      for (const auto n : c.facet) touch(n);
+      touch_free(c.node);
+      std::for_each(c.facet.begin(), c.facet.end(), touch_free);
     }
     std::sort(touched.begin(), touched.end());
   }
 
-  Vec3 element_force(std::size_t i) const {
+  Vec3 internal_force(std::size_t i) const {
     Vec3 f = Vec3::Zero();
     for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
       const float* g = shares[std::size_t(q)]->v;
@@ -333,7 +362,7 @@ struct Explicit::Impl {
 
   /// v* = (m v + dt f) / (m + dt drag m0): drag implicit, on the unscaled mass m0.
   Vec3 predicted_velocity(std::size_t i) const {
-    Vec3 f = element_force(i);
+    Vec3 f = internal_force(i);
     if (traits[i] & loaded) f += external_force[i];
     if (!(traits[i] & held)) return carry[i] * state.v[i] + pull[i] * f;
     const Vec3 momentum = masses.scaled[i] * state.v[i] + dt * f;
@@ -347,8 +376,8 @@ struct Explicit::Impl {
     parallel::for_chunks(state.x.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
       NodeSums& s = sums[c] = {};
       for (std::size_t i = b; i < e; ++i) {
-        if (traits[i] & fixed) continue;
-        const Vec3 before = state.v[i], free = predicted_velocity(i);
+        if ((traits[i] & (fixed | touching)) == fixed) continue;
+        const Vec3 before = state.v[i], free = traits[i] & fixed ? before : predicted_velocity(i);
         state.v[i] = free;
         if (traits[i] & touching) {
           v_before[i] = before, v_free[i] = free;
@@ -357,6 +386,61 @@ struct Explicit::Impl {
         }
       }
     });
+  }
+
+  /// What acts on a tied node acts on its facet.
+  void carry_ties() {
+    for (const auto& tie : model.ties) {
+      const Vec3 f = internal_force(std::size_t(tie.node)) + external_force[tie.node];
+      for (int k = 0; k < 3; ++k) {
+        const auto n = tie.facet[k];
+        const Vec3 impulse = dt * tie.weights[k] * f;
+        state.v[n] +=
+            inverse_mass[n].cwiseProduct(impulse) - inverse_mass_blocked[n].dot(impulse) * inverse_mass_blocked[n];
+        v_free[n] = state.v[n];
+      }
+    }
+  }
+
+  /// Imposed velocities, v = (x(t + dt) - x)/dt, and the work of what imposes them: r = m dv/dt + drag m0 v - f.
+  void impose_motions() {
+    const double t = double(state.step + 1) * dt * scale;
+    for (const auto& motion : model.motions) {
+      for (const auto n : motion.nodes) {
+        const Vec3 wanted = (fem::placed(motion, model.mesh.nodes[n], t) - state.x[n]) / dt;
+        const Vec3 f = internal_force(std::size_t(n)) + external_force[n];
+        Vec3& v = state.v[n];
+        for (int k = 0; k < 3; ++k) {
+          if (!((motion.axes >> k) & 1)) continue;
+          v[k] = v_free[n][k] = wanted[k];
+          const double r =
+              masses.scaled[n] * (v[k] - v_before[n][k]) / dt + options.drag / scale * masses.unscaled[n] * v[k] - f[k];
+          work.external += dt * r * 0.5 * (v[k] + v_before[n][k]);
+        }
+      }
+    }
+  }
+
+  void follow_ties() {
+    for (const auto& tie : model.ties) {
+      Vec3 v = Vec3::Zero();
+      for (int k = 0; k < 3; ++k) v += tie.weights[k] * state.v[tie.facet[k]];
+      state.v[tie.node] = v_free[tie.node] = v;
+    }
+  }
+
+  /// Static: inertia is left out.
+  std::vector<Vec3> reactions(const std::vector<Vec3>& contact_force) const {
+    std::vector<Vec3> f(state.x.size());
+    for (std::size_t i = 0; i < f.size(); ++i) f[i] = internal_force(i) + external_force[i] + contact_force[i];
+    for (const auto& tie : model.ties) {
+      for (int k = 0; k < 3; ++k) f[tie.facet[k]] += tie.weights[k] * f[tie.node];
+      f[tie.node].setZero();
+    }
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      for (int k = 0; k < 3; ++k) f[i][k] = (constrained[i] >> k) & 1 ? -f[i][k] : 0;
+    }
+    return f;
   }
 
   void solve_contact() {
@@ -461,7 +545,10 @@ struct Explicit::Impl {
     check();
     find_contacts();
     predict();
+    carry_ties();
+    impose_motions();
     solve_contact();
+    follow_ties();
     move_touched();
   }
 
@@ -571,6 +658,7 @@ Observables Explicit::observe() const {
   o.contact_force = s.contact_impulse;
   const double per = s.contact_samples ? 1 / (s.dt * s.contact_samples) : 0;
   for (Vec3& f : o.contact_force) f *= per;
+  o.reaction = s.reactions(o.contact_force);
   o.hinge_angle = s.state.hinge_angle;
   o.rest_length_mean = s.rest_length.mean();
   return o;

@@ -32,6 +32,7 @@ struct Observables {
   double min_J = 1;
   int inverted = 0;
   std::vector<Vec3> contact_force;  ///< per node [N], the latest step's impulses over dt
+  std::vector<Vec3> reaction;       ///< per node [N], what holds it on its constrained axes, inertia left out; else 0
   std::vector<double> hinge_angle;  ///< [rad]
   double rest_length_mean = 1;      ///< retraction
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "shapes.hpp"
+#include "carus/mesh/shapes.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <map>
 #include <random>
 
-namespace carus::shapes {
+namespace carus::mesh::shapes {
 
 mesh::TetMesh grid(int nx, int ny, int nz, const std::function<Vec3(const Vec3&)>& map, std::int32_t label) {
   mesh::TetMesh m;
@@ -107,4 +107,4 @@ mesh::TetMesh join(const mesh::TetMesh& a, const mesh::TetMesh& b) {
   return m;
 }
 
-}  // namespace carus::shapes
+}  // namespace carus::mesh::shapes

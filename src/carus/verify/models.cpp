@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "models.hpp"
+#include "carus/verify/models.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 #include "carus/fem/element_block.hpp"
 
-namespace carus::models {
+namespace carus::verify {
 
 material::Material soft(material::Law law, double shear_modulus, double poisson, double density) {
   material::Material m;
@@ -86,4 +86,4 @@ double wave_speed(const material::Material& m) {
 
 Mat3 skew_rotation(double angle) { return Eigen::AngleAxisd(angle, Vec3(1, -2, 0.7).normalized()).toRotationMatrix(); }
 
-}  // namespace carus::models
+}  // namespace carus::verify
