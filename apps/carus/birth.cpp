@@ -24,11 +24,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler
 
 void tell_plan(const scenario::Scenario& s, const fem::Model& model, const results::Engine::Facts& f) {
   spdlog::info("{}: {} elements, {} nodes", s.name, model.mesh.tets.size(), model.mesh.nodes.size());
-  spdlog::info(
-      "{} steps of {:.3g} s (unscaled critical step {:.3g} s, limited by {}; mass added {:.2f} %); 1 s of pseudo-time "
-      "is {:.0f} s of labour",
-      f.steps, f.step.time_step, f.step.unscaled_critical_step, f.step.limiting_region,
-      100 * f.step.mass_scaled_fraction, f.labour_per_pseudo);
+  spdlog::info("{}", f.plan);
 }
 
 }  // namespace

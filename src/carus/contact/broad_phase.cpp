@@ -20,7 +20,7 @@ TriangleTree::TriangleTree(const mesh::Triangles& triangles, const std::vector<V
   if (triangles.empty()) return;
   nodes_.push_back({{}, -1, 0, std::int32_t(triangles.size())});
   for (std::size_t i = 0; i < nodes_.size(); ++i) split(std::int32_t(i), centres);
-  refit(triangles, rest);
+  refit(triangles, rest, rest);
 }
 
 void TriangleTree::split(std::int32_t i, const std::vector<Vec3>& centres) {
@@ -39,10 +39,10 @@ void TriangleTree::split(std::int32_t i, const std::vector<Vec3>& centres) {
   nodes_.push_back({{}, -1, middle, last});
 }
 
-void TriangleTree::refit(const mesh::Triangles& triangles, const std::vector<Vec3>& x) {
+void TriangleTree::refit(const mesh::Triangles& triangles, const std::vector<Vec3>& x, const std::vector<Vec3>& y) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     items_[t].setEmpty();
-    for (const auto n : triangles[t]) items_[t].extend(x[n]);
+    for (const auto n : triangles[t]) items_[t].extend(x[n]).extend(y[n]);
   }
   for (std::size_t i = nodes_.size(); i-- > 0;) {  // children come after their parents
     Node& node = nodes_[i];

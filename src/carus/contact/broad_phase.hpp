@@ -16,8 +16,8 @@ class TriangleTree {
 
   TriangleTree(const mesh::Triangles& triangles, const std::vector<Vec3>& rest);
 
-  /// Boxes of the triangles at x. Linear.
-  void refit(const mesh::Triangles& triangles, const std::vector<Vec3>& x);
+  /// Boxes of the triangles on their way from x to y. Linear.
+  void refit(const mesh::Triangles& triangles, const std::vector<Vec3>& x, const std::vector<Vec3>& y);
   [[nodiscard]] const Box& box(std::size_t triangle) const { return items_[triangle]; }
 
   /// Calls f(triangle) for all whose boxes meet `query`, always in the same order.

@@ -65,17 +65,17 @@ BarrierPotential::BarrierPotential(std::vector<Side> sides, std::vector<Touching
 
 // ---- candidates ----
 
-/// Pairs of primitives whose boxes come within `reach`, each once: a triangle brings in the nodes and edges that it
-/// owns.
-void BarrierPotential::search_pair(int pair, const std::vector<Vec3>& x, double reach) {
-  const auto [a, b, friction] = pairs_[pair];
-  (void)friction;
+/// Pairs of primitives whose boxes, on their way from x to y, come within `reach`, each once: a triangle brings in the
+/// nodes and edges that it owns.
+void BarrierPotential::search_pair(int pair, const std::vector<Vec3>& x, const std::vector<Vec3>& y, double reach,
+                                   std::vector<Stencil>& all) {
+  const int a = pairs_[pair].a, b = pairs_[pair].b;
   const bool self = a == b;
   const auto &A = sides_[a].triangles, &B = sides_[b].triangles;
   const Own &own_a = own_[a], &own_b = own_[b];
   const auto box_of = [&](std::initializer_list<std::int32_t> nodes) {
     TriangleTree::Box box;
-    for (const auto n : nodes) box.extend(x[n]);
+    for (const auto n : nodes) box.extend(x[n]).extend(y[n]);
     return box;
   };
   const auto grown = [&](TriangleTree::Box box) {
@@ -92,7 +92,7 @@ void BarrierPotential::search_pair(int pair, const std::vector<Vec3>& x, double 
     const auto points = [&](const mesh::Triangle& of, const Own& own, std::size_t i, const mesh::Triangle& t,
                             const TriangleTree::Box& box) {
       for (int k = 0; k < 3; ++k) {
-        if (!own.vertex[i][k] || !grown(box).contains(x[of[k]])) continue;
+        if (!own.vertex[i][k] || !grown(box).intersects(box_of({of[k]}))) continue;
         const Stencil s{{of[k], t[0], t[1], t[2]}, false, std::int16_t(pair), point_share * own.vertex_area[i][k], 0};
         if (movable(s.nodes) && !share_node(s.nodes, 1)) out.push_back(s);
       }
@@ -123,18 +123,21 @@ void BarrierPotential::search_pair(int pair, const std::vector<Vec3>& x, double 
       });
     }
   });
-  for (const auto& f : found_) candidates_.insert(candidates_.end(), f.begin(), f.end());
+  for (const auto& f : found_) all.insert(all.end(), f.begin(), f.end());
 }
 
-/// Self-contact within one triangle pair meets both (i, j) and edges of i with edges of i: those share nodes. What two
-/// triangles own is met once, since each owner pair is visited once.
+void BarrierPotential::collect(const std::vector<Vec3>& x, const std::vector<Vec3>& y, double reach,
+                               std::vector<Stencil>& out) {
+  ++searches_;
+  out.clear();
+  for (std::size_t s = 0; s < sides_.size(); ++s) trees_[s].refit(sides_[s].triangles, x, y);
+  for (int p = 0; p < int(pairs_.size()); ++p) search_pair(p, x, y, reach, out);
+}
+
 void BarrierPotential::search(const std::vector<Vec3>& x, double extra) {
   searched_at_ = x;
   searched_reach_ = barrier_.reach + extra;
-  ++searches_;
-  candidates_.clear();
-  for (std::size_t s = 0; s < sides_.size(); ++s) trees_[s].refit(sides_[s].triangles, x);
-  for (int p = 0; p < int(pairs_.size()); ++p) search_pair(p, x, searched_reach_);
+  collect(x, x, searched_reach_, candidates_);
 }
 
 /// Makes sure that every pair within `distance` of x is among the candidates: two nodes have come nearer to each other
@@ -295,11 +298,20 @@ double BarrierPotential::conservative_step(const std::vector<Vec3>& x, const std
   longest = std::sqrt(longest);
   constexpr double furthest = 0.01;  // [m] that any node may go in one correction: bounds the search
   const double most = longest > furthest ? furthest / longest : 1;
-  ready(x, std::max(barrier_.reach, 2 * most * longest));
-  std::vector<double> part((candidates_.size() + candidate_chunk - 1) / candidate_chunk, most);
-  parallel::for_chunks(candidates_.size(), candidate_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
+  // What is near serves short ways; long ones are looked at as a whole.
+  const std::vector<Stencil>* list = &candidates_;
+  if (2 * most * longest <= barrier_.reach + slack) {
+    ready(x, std::max(barrier_.reach, 2 * most * longest));
+  } else {
+    std::vector<Vec3> y = x;
+    for (std::size_t i = 0; i < y.size(); ++i) y[i] += most * p[i];
+    collect(x, y, 1e-9, swept_);
+    list = &swept_;
+  }
+  std::vector<double> part((list->size() + candidate_chunk - 1) / candidate_chunk, most);
+  parallel::for_chunks(list->size(), candidate_chunk, [&](std::size_t begin, std::size_t end, std::size_t chunk) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Stencil& s = candidates_[k];
+      const Stencil& s = (*list)[k];
       part[chunk] =
           std::min(part[chunk], contact::conservative_step(corners(s, x), corners(s, p), s.edges, part[chunk]));
     }

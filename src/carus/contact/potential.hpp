@@ -94,8 +94,10 @@ class BarrierPotential {
   };
 
   void search(const std::vector<Vec3>& x, double slack);
+  void collect(const std::vector<Vec3>& x, const std::vector<Vec3>& y, double reach, std::vector<Stencil>& out);
   void ready(const std::vector<Vec3>& x, double distance);
-  void search_pair(int pair, const std::vector<Vec3>& x, double reach);
+  void search_pair(int pair, const std::vector<Vec3>& x, const std::vector<Vec3>& y, double reach,
+                   std::vector<Stencil>& all);
   static Corners corners(const Stencil& s, const std::vector<Vec3>& x) {
     return {x[s.nodes[0]], x[s.nodes[1]], x[s.nodes[2]], x[s.nodes[3]]};
   }
@@ -114,7 +116,8 @@ class BarrierPotential {
   Barrier barrier_;
   std::vector<Own> own_;
   std::vector<TriangleTree> trees_;
-  std::vector<Stencil> candidates_;
+  std::vector<Stencil> candidates_;          ///< near each other at the last search
+  std::vector<Stencil> swept_;               ///< whose ways met, in the last collision detection that needed its own
   std::vector<std::vector<Stencil>> found_;  // per chunk
   std::vector<Vec3> searched_at_;
   double searched_reach_ = -1;

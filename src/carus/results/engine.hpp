@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "carus/scenario/scenario.hpp"
-#include "carus/solve/explicit.hpp"
+#include "carus/solve/implicit.hpp"
 
 namespace carus::results {
 
@@ -25,12 +25,13 @@ class Engine {
     std::int64_t steps = 0;  ///< of the whole labour
     double labour_per_pseudo = 1;
     solve::StepReport step{};
+    std::string plan;  ///< for the log: steps, and what limits them
   };
   virtual Facts facts() const = 0;
   virtual std::vector<std::pair<std::string, double>> timings() const = 0;
 };
 
-/// The solver that the scenario names. Throws InputError if this build has none of that kind.
+/// The solver that the scenario names. Throws InputError where the model cannot be solved by it.
 std::unique_ptr<Engine> make_engine(const scenario::Scenario& scenario, const fem::Model& model);
 /// The explicit solver with these options.
 std::unique_ptr<Engine> make_engine(const fem::Model& model, const solve::ExplicitOptions& options);

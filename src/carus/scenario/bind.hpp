@@ -87,6 +87,12 @@ template <class Visitor>
 void bind_numerics(Visitor& v, Scenario& s) {
   v.choice("solver.kind", s.solver,
            {{"explicit", SolverKind::explicit_dynamics}, {"implicit", SolverKind::implicit_dynamics}});
+  auto& i = s.implicit;
+  v("solver.implicit.time_step", i.time_step), v("solver.implicit.least_time_step", i.least_time_step);
+  v("solver.implicit.step_tolerance", i.step_tolerance), v("solver.implicit.newton_tolerance", i.newton_tolerance);
+  v("solver.implicit.max_iterations", i.max_iterations), v("solver.implicit.linear_tolerance", i.linear_tolerance);
+  v("solver.implicit.barrier_distance", i.barrier_distance), v("solver.implicit.barrier_pressure", i.barrier_pressure);
+  v("solver.implicit.friction_speed", i.friction_speed);
   auto& n = s.numerics;
   v("numerics.labour_duration", n.labour_duration), v("numerics.pseudo_duration", n.pseudo_duration);
   v("numerics.pseudo_time_factor", n.pseudo_time_factor), v("numerics.time_step", n.time_step),

@@ -89,8 +89,9 @@ class Check {
   }
 
   void solver() {
-    if (s_.solver == SolverKind::implicit_dynamics)
-      refuse("solver.kind", "\"implicit\"", "explicit", "this version has no implicit solver");
+    if (s_.implicit.least_time_step > s_.implicit.time_step)
+      refuse("solver.implicit.least_time_step", seconds(s_.implicit.least_time_step),
+             "at most " + seconds(s_.implicit.time_step), "it must not exceed solver.implicit.time_step");
   }
 
   Problems problems;

@@ -123,4 +123,17 @@ solve::ExplicitOptions explicit_options(const Scenario& s) {
   return o;
 }
 
+solve::ImplicitOptions implicit_options(const Scenario& s) {
+  const Implicit& i = s.implicit;
+  solve::ImplicitOptions o;
+  o.time_step = i.time_step, o.least_time_step = i.least_time_step;
+  o.step_tolerance = i.step_tolerance, o.newton_tolerance = i.newton_tolerance;
+  o.max_iterations = i.max_iterations, o.linear_tolerance = i.linear_tolerance;
+  o.drag = s.numerics.drag * s.numerics.drag_factor;
+  o.barrier_distance = i.barrier_distance, o.barrier_pressure = i.barrier_pressure;
+  o.friction_speed = i.friction_speed;
+  o.threads = s.numerics.threads;
+  return o;
+}
+
 }  // namespace carus::scenario

@@ -10,7 +10,7 @@
 #include "carus/fem/model.hpp"
 #include "carus/labour/labour.hpp"
 #include "carus/material/material.hpp"
-#include "carus/solve/explicit.hpp"
+#include "carus/solve/implicit.hpp"
 
 namespace carus::scenario {
 
@@ -56,6 +56,16 @@ struct Attachments {
   double bed_depth = 0;                       ///< [m], where the canal is wide
   bool canal_blocked = true;
 };
+/// Of the implicit solver: the keys of `solver.implicit`.
+struct Implicit {
+  double time_step = 0, least_time_step = 0;        ///< [s of labour]
+  double step_tolerance = 0, newton_tolerance = 0;  ///< [m]
+  int max_iterations = 0;
+  double linear_tolerance = 0;
+  double barrier_distance = 0;  ///< [m]
+  double barrier_pressure = 0;  ///< [Pa]
+  double friction_speed = 0;    ///< [m/s]
+};
 struct Numerics {
   double labour_duration = 0;   ///< [s]
   double pseudo_duration = 0;   ///< [s]
@@ -87,6 +97,7 @@ struct Scenario {
   Coccyx coccyx;
   Attachments attachments;
   SolverKind solver = SolverKind::explicit_dynamics;
+  Implicit implicit;
   Numerics numerics;
   Output output;
   std::vector<std::string> warnings;  ///< values outside the range that their source covers
@@ -109,6 +120,8 @@ std::map<std::string, std::string> anatomy_settings(const Scenario& scenario);
 
 /// Options of the explicit solver, with the multipliers of drag and pseudo-time applied.
 solve::ExplicitOptions explicit_options(const Scenario& scenario);
+/// Options of the implicit solver; drag and its multiplier are the explicit one's.
+solve::ImplicitOptions implicit_options(const Scenario& scenario);
 
 const char* name_of(Resolution resolution);
 

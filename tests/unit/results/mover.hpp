@@ -37,7 +37,7 @@ class Mover final : public results::Engine {
   const fem::State& state() const override { return state_; }
   void restore(const fem::State& state) override { state_ = state; }
   solve::Observables observe() const override { return {}; }
-  Facts facts() const override { return {1920, 960, {}}; }
+  Facts facts() const override { return {1920, 960, {}, {}}; }
   std::vector<std::pair<std::string, double>> timings() const override { return {}; }
 
   std::function<void(double)> on_advance;

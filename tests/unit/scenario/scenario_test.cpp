@@ -149,7 +149,7 @@ materials:
   bone: {youngs_modulus: 0 kPa}
   abdomen: {c10: 0 kPa, fibre: {k1: 1 kPa}, prony: [{g: 0.6}, {g: 0.5}]}
 calibrated: [{key: canal.radus}]
-solver: {kind: implicit}
+solver: {kind: implicit, implicit: {time_step: 1 s, least_time_step: 2 s}}
 )"),
             (Messages{
                 "s.yaml: loads.contractions.duration: 50 s contradicts other keys; allowed at least 60 s; rise and "
@@ -179,8 +179,8 @@ solver: {kind: implicit}
                 "has it: set materials.skull.law",
                 "s.yaml: calibrated[0].key: \"canal.radus\" contradicts other keys; allowed a key of the schema; did "
                 "you mean canal.radius?",
-                "s.yaml: solver.kind: \"implicit\" contradicts other keys; allowed explicit; this version has no "
-                "implicit solver",
+                "s.yaml: solver.implicit.least_time_step: 2 s contradicts other keys; allowed at most 1 s; it must not "
+                "exceed solver.implicit.time_step",
             }));
 }
 
