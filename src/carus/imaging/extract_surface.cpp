@@ -2,11 +2,12 @@
 #include "carus/imaging/extract_surface.hpp"
 
 #include <fmt/format.h>
+#include <vtkFloatArray.h>
 #include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
-#include <vtkImageGaussianSmooth.h>
 #include <vtkImageReslice.h>
 #include <vtkNew.h>
+#include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkWindowedSincPolyDataFilter.h>
 
@@ -15,6 +16,7 @@
 #include <cmath>
 
 #include "carus/core/error.hpp"
+#include "carus/imaging/indicator.hpp"
 #include "carus/imaging/vtk_surface.hpp"
 
 namespace carus::imaging {
@@ -22,25 +24,17 @@ namespace {
 
 constexpr double volume_goal = 0.002, volume_limit = 0.01;
 
-/// The label's indicator on the image's own grid, spacing as the voxels', origin 0.
-vtkSmartPointer<vtkImageData> indicator(const LabelVolume& v) {
-  auto image = vtkSmartPointer<vtkImageData>::New();
+/// Values on the voxels' grid, drawn on an isotropic one: origin 0, axes those of the voxels.
+vtkSmartPointer<vtkImageData> resampled(std::vector<float>& values, const LabelVolume& v, double spacing) {
+  vtkNew<vtkFloatArray> array;
+  array->SetArray(values.data(), vtkIdType(values.size()), 1);  // values stays the owner
+  vtkNew<vtkImageData> image;
   image->SetDimensions(v.size.data());
   image->SetSpacing(v.spacing().data());
-  image->AllocateScalars(VTK_FLOAT, 1);
-  auto* p = static_cast<float*>(image->GetScalarPointer());
-  for (const auto l : v.labels) *p++ = l != 0 ? 1.F : 0.F;
-  return image;
-}
-
-vtkSmartPointer<vtkImageData> smoothed(const LabelVolume& v, const ExtractOptions& o) {
-  vtkNew<vtkImageGaussianSmooth> smooth;
-  smooth->SetInputData(indicator(v));
-  smooth->SetStandardDeviation(o.smoothing);
-  smooth->SetRadiusFactor(3);
+  image->GetPointData()->SetScalars(array);
   vtkNew<vtkImageReslice> resample;
-  resample->SetInputConnection(smooth->GetOutputPort());
-  const double h = o.spacing > 0 ? o.spacing : v.spacing().minCoeff();
+  resample->SetInputData(image);
+  const double h = spacing > 0 ? spacing : v.spacing().minCoeff();
   resample->SetOutputSpacing(h, h, h);
   resample->SetInterpolationModeToCubic();
   resample->Update();
@@ -98,9 +92,11 @@ Extracted extract_surface(const LabelVolume& volume, std::int32_t label, const E
   Extracted e;
   e.labelled_volume = static_cast<double>(v.labels.size() - std::count(v.labels.begin(), v.labels.end(), 0)) *
                       v.voxel_volume();
-  const auto image = smoothed(v, o);
-  // Secant steps on level -> volume. The first guess is half way, a little off so that no node lies on a grid point.
-  double level = 0.49973, before = 0, error_before = 0, error = 0;
+  auto values = smoothed_indicator(v, o.smoothing);
+  const auto image = resampled(values, v, o.spacing);
+  // Secant steps on level -> volume. Cubic interpolation, which overshoots, and fairing move it a little from the first
+  // guess.
+  double level = level_of_volume(values, v.labels), before = 0, error_before = 0, error = 0;
   for (int it = 0; it < 8; ++it) {
     e.surface = level_set(*image, level, v);
     e.volume = mesh::volume(e.surface);

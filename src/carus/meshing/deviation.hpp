@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -17,8 +18,8 @@ class Distances {
   Distances& operator=(Distances&&) noexcept;
   /// To the nearest point of the surface [m], one for each point. Points near each other in the list are fastest.
   [[nodiscard]] std::vector<double> to(const std::vector<Vec3>& points) const;
-  /// Nearest point of the surface.
-  [[nodiscard]] Vec3 nearest(const Vec3& x) const;
+  [[nodiscard]] Vec3 nearest(const Vec3& x) const;    ///< nearest point of the surface
+  [[nodiscard]] Vec3 normal_at(const Vec3& x) const;  ///< unit normal of the facet nearest to x
   /// Distance along a ray of unit direction to its first meeting with the surface; infinity if there is none.
   [[nodiscard]] double along(const Vec3& origin, const Vec3& direction) const;
   [[nodiscard]] const mesh::Surface& surface() const;

@@ -4,7 +4,6 @@
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Bounded_normal_change_filter.h>
-#include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/GarlandHeckbert_plane_policies.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 
 #include <algorithm>
@@ -20,7 +19,7 @@ namespace Collapse = CGAL::Surface_mesh_simplification;
 using Kernel = CGAL::Simple_cartesian<double>;
 using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
 
-// Quadrics are sums of squares of distances: near the origin and of order one they lose least.
+// Costs are sums of squares of volumes and areas: near the origin and of order one they lose least.
 struct Scaling {
   Vec3 centre;
   double size;
@@ -28,7 +27,8 @@ struct Scaling {
 
 Mesh to_cgal(const mesh::Surface& s, const Scaling& to) {
   Mesh m;
-  m.reserve(s.nodes.size(), 3 * s.nodes.size(), s.triangles.size());
+  const auto nodes = static_cast<Mesh::size_type>(s.nodes.size());
+  m.reserve(nodes, 3 * nodes, 2 * nodes);
   for (const auto& x : s.nodes) {
     const Vec3 y = (x - to.centre) / to.size;
     m.add_vertex({y.x(), y.y(), y.z()});
@@ -88,11 +88,9 @@ std::vector<mesh::Surface> simplify(const mesh::Surface& surface, const std::vec
   const auto box = mesh::box(surface);
   const Scaling scaling{box.center(), box.sizes().maxCoeff()};
   Mesh m = to_cgal(surface, scaling);
-  const Collapse::GarlandHeckbert_plane_policies<Mesh, Kernel> quadrics(m);
+  // Without the filter a few triangles in ten thousand fold over and cut their neighbours.
   Collapse::edge_collapse(m, Recorder(node_counts, states, scaling),
-                          CGAL::parameters::get_cost(quadrics.get_cost())
-                              .get_placement(quadrics.get_placement())
-                              .filter(Collapse::Bounded_normal_change_filter<>()));
+                          CGAL::parameters::filter(Collapse::Bounded_normal_change_filter<>()));
   while (states.size() < node_counts.size()) states.push_back(from_cgal(m, scaling));
   return states;
 }

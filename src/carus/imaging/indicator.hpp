@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "carus/imaging/label_volume.hpp"
+
+namespace carus::imaging {
+
+/// 1 in every labelled voxel and 0 elsewhere, smoothed by a Gaussian of that standard deviation [voxels] along each
+/// index.
+std::vector<float> smoothed_indicator(const LabelVolume& v, double smoothing);
+
+/// The level that as many voxels pass as have a label: there the smoothed organ keeps its volume, where one half would
+/// take from whatever is convex or thin.
+double level_of_volume(const std::vector<float>& values, const std::vector<std::int32_t>& labels);
+
+}  // namespace carus::imaging
