@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "app.hpp"
+#include "carus/core/error.hpp"
 #include "carus/core/units.hpp"
 #include "carus/imaging/read_labels.hpp"
 #include "carus/imaging/smooth_labels.hpp"
