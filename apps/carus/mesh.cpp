@@ -37,8 +37,8 @@ mesh::Surface simplified(const Organ& organ, const SurfaceArguments& a) {
 #ifdef CARUS_WITH_MESHING
   if (!a.error.empty()) return meshing::simplify_within(organ.surface, length(a.error, "--error", 1e-6, 0.1));
   if (a.reduction >= 100) throw InputError(fmt::format("--reduction {}; allowed 0 to below 100 %", a.reduction));
-  const auto n = a.nodes > 0 ? a.nodes
-                             : static_cast<std::size_t>((1 - a.reduction / 100) * double(organ.surface.nodes.size()));
+  const auto n =
+      a.nodes > 0 ? a.nodes : static_cast<std::size_t>((1 - a.reduction / 100) * double(organ.surface.nodes.size()));
   if (n > organ.surface.nodes.size())
     throw InputError(fmt::format("--nodes {}; {} has {}: draw its surface finer with --spacing", n, organ.name,
                                  organ.surface.nodes.size()));
@@ -52,7 +52,8 @@ mesh::Surface simplified(const Organ& organ, const SurfaceArguments& a) {
 std::filesystem::path file_of(const std::filesystem::path& out, const std::string& organ, bool several) {
   if (!several) return out;
   std::string tag = organ;
-  std::replace_if(tag.begin(), tag.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
+  std::replace_if(
+      tag.begin(), tag.end(), [](char c) { return !std::isalnum(static_cast<unsigned char>(c)); }, '_');
   auto file = out;
   return file.replace_filename(out.stem().string() + "_" + tag + out.extension().string());
 }
@@ -119,7 +120,8 @@ std::string csv_rows(const Organ& organ, const meshing::Precision& p) {
 }
 
 constexpr const char* csv_head =
-    "reduction_percent,nodes,d_mean_mm,d_max_mm,alpha_percent,forward_mean_mm,forward_rms_mm,forward_p95_mm,forward_max_mm,"
+    "reduction_percent,nodes,d_mean_mm,d_max_mm,alpha_percent,forward_mean_mm,forward_rms_mm,forward_p95_mm,forward_"
+    "max_mm,"
     "backward_mean_mm,backward_rms_mm,backward_p95_mm,backward_max_mm,d_organ_mm,nodes_before,organ\n";
 
 std::string measure(Organ& organ, const PrecisionArguments& a, bool several) {
@@ -132,13 +134,13 @@ std::string measure(Organ& organ, const PrecisionArguments& a, bool several) {
   }
   const auto p = meshing::precision(original, reductions, a.samples);
   fmt::print("\n{}: {} nodes, d_organ {:.2f} mm: {}\n{:>12}{:>10}{:>12}{:>12}{:>12}\n", organ.name,
-             organ.surface.nodes.size(), organ.d_organ / units::mm, organ.d_organ_is, "reduction %", "nodes", "d_mean mm",
-             "d_max mm", "alpha %");
+             organ.surface.nodes.size(), organ.d_organ / units::mm, organ.d_organ_is, "reduction %", "nodes",
+             "d_mean mm", "d_max mm", "alpha %");
   std::size_t nearest = 0;
   for (std::size_t i = 0; i < p.rows.size(); ++i) {
     const auto& r = p.rows[i];
-    fmt::print("{:>12.6g}{:>10}{:>12.4f}{:>12.4f}{:>12.2f}\n", 100 * r.reduction, r.nodes, r.deviation.mean() / units::mm,
-               r.deviation.largest() / units::mm, r.alpha(organ.d_organ));
+    fmt::print("{:>12.6g}{:>10}{:>12.4f}{:>12.4f}{:>12.2f}\n", 100 * r.reduction, r.nodes,
+               r.deviation.mean() / units::mm, r.deviation.largest() / units::mm, r.alpha(organ.d_organ));
     if (std::abs(r.reduction - a.map_at / 100) < std::abs(p.rows[nearest].reduction - a.map_at / 100)) nearest = i;
   }
   if (a.map_at > 0) {
@@ -167,9 +169,11 @@ int precision(const PrecisionArguments&) { needs_meshing(); }
 
 void add_surface(CLI::App& mesh, int& status) {
   auto a = std::make_shared<SurfaceArguments>();
-  auto* c = mesh.add_subcommand("surface", "A smooth closed surface of a label that keeps its volume, simplified if asked");
+  auto* c =
+      mesh.add_subcommand("surface", "A smooth closed surface of a label that keeps its volume, simplified if asked");
   add_organ_options(*c, a->source);
-  c->add_option("--out", a->out, "File: .stl, .ply or .vtp, in RAS and mm; of several organs, each has its name in it")->required();
+  c->add_option("--out", a->out, "File: .stl, .ply or .vtp, in RAS and mm; of several organs, each has its name in it")
+      ->required();
   c->add_option("--nodes", a->nodes, "Simplify to so many nodes");
   c->add_option("--reduction", a->reduction, "Simplify: take so many per cent of the nodes away");
   c->add_option("--error", a->error, "Simplify as far as the distance, both ways, stays within this length");
@@ -181,13 +185,17 @@ void add_surface(CLI::App& mesh, int& status) {
 
 void add_precision(CLI::App& mesh, int& status) {
   auto a = std::make_shared<PrecisionArguments>();
-  auto* c = mesh.add_subcommand("precision", "What simplification costs: the paper's Figs. 2 and 3 and Table 1, as CSV and VTP");
+  auto* c = mesh.add_subcommand("precision",
+                                "What simplification costs: the paper's Figs. 2 and 3 and Table 1, as CSV and VTP");
   add_organ_options(*c, a->source);
   c->add_option("--out", a->out, "CSV; the distance map goes beside it as .vtp")->required();
-  c->add_option("--reductions", a->reductions, "Parts of the nodes to take away [%]")->delimiter(',')->capture_default_str();
-  c->add_option("--d-organ", a->d_organ,
-                "Length for alpha: a length with its unit, iliac_wing or thin_part (both measured); silent: thin_part, of "
-                "generated organs the paper's");
+  c->add_option("--reductions", a->reductions, "Parts of the nodes to take away [%]")
+      ->delimiter(',')
+      ->capture_default_str();
+  c->add_option(
+      "--d-organ", a->d_organ,
+      "Length for alpha: a length with its unit, iliac_wing or thin_part (both measured); silent: thin_part, of "
+      "generated organs the paper's");
   c->add_option("--map-at", a->map_at, "Reduction of the distance map [%]; 0: none")->capture_default_str();
   c->add_option("--samples", a->samples, "Points on each surface at which it is measured")->capture_default_str();
   c->footer(

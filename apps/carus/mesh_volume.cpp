@@ -118,8 +118,8 @@ int volume(const VolumeArguments& a) {
     throw InputError("give either --labels FILE or --surface FILE (again for each organ)");
   const auto solid = a.source.labels.empty() ? from_surfaces(a.source) : from_labels(a.source);
   const auto m = tetrahedra(solid, sizes(a, solid));
-  fmt::print("{:<20}{:>9}{:>12}{:>11}{:>10}{:>10}{:>13}{:>9}\n", "", "tets", "volume ml", "of source", "min deg", "max deg",
-             "altitude mm", "aspect");
+  fmt::print("{:<20}{:>9}{:>12}{:>11}{:>10}{:>10}{:>13}{:>9}\n", "", "tets", "volume ml", "of source", "min deg",
+             "max deg", "altitude mm", "aspect");
   int missing = 0;
   const auto report = meshing::quality_report(m);
   for (const auto& [l, wanted] : solid.volumes) {
@@ -149,13 +149,15 @@ int volume(const VolumeArguments&) {
 
 void add_mesh_volume(CLI::App& mesh, int& status) {
   auto a = std::make_shared<VolumeArguments>();
-  auto* c = mesh.add_subcommand("volume", "Tetrahedra of labels or closed surfaces; organs that touch share their nodes");
+  auto* c =
+      mesh.add_subcommand("volume", "Tetrahedra of labels or closed surfaces; organs that touch share their nodes");
   add_organ_options(*c, a->source);
   c->add_option("--size", a->size, "Length of an edge")->capture_default_str();
   c->add_option("--size-of", a->size_of, "The same for one organ: LABEL=LENGTH or NAME=LENGTH");
   c->add_option("--out", a->out, "File: .vtu, .msh, .inp or .stl, in RAS and mm; may be given again")->required();
   c->footer(
-      "Examples:\n  carus mesh volume --labels pelvis.nii.gz --size \"6 mm\" --size-of 4=\"2 mm\" --out pelvis.vtu pelvis.msh\n"
+      "Examples:\n  carus mesh volume --labels pelvis.nii.gz --size \"6 mm\" --size-of 4=\"2 mm\" --out pelvis.vtu "
+      "pelvis.msh\n"
       "  carus mesh volume --surface sacrum.stl coccyx.stl --unit mm --frame LSA --out back.inp");
   c->callback([a, &status] { status = volume(*a); });
 }

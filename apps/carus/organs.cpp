@@ -28,7 +28,8 @@ std::vector<std::int32_t> labels_of(const std::string& text) {
     std::int32_t l = 0;
     const auto [rest, problem] = std::from_chars(text.data() + at, text.data() + end, l);
     if (problem != std::errc() || rest != text.data() + end || l < 1 || l > 65535)
-      throw InputError(fmt::format("--label {}: allowed whole numbers from 1 to 65535, or several joined as in 1+2", text));
+      throw InputError(
+          fmt::format("--label {}: allowed whole numbers from 1 to 65535, or several joined as in 1+2", text));
     labels.push_back(l);
     at = end + 1;
   }
@@ -43,8 +44,8 @@ Organ from_labels(const imaging::LabelVolume& v, std::int32_t label, const std::
                   const imaging::ExtractOptions& options) {
   auto e = imaging::extract_surface(v, label, options, file);
   tell(name, e.notes);
-  fmt::print("{}: {} nodes, {:.1f} ml of {:.1f} ml labelled ({:+.2f} %)\n", name, e.surface.nodes.size(), 1e6 * e.volume,
-             1e6 * e.labelled_volume, 100 * (e.volume / e.labelled_volume - 1));
+  fmt::print("{}: {} nodes, {:.1f} ml of {:.1f} ml labelled ({:+.2f} %)\n", name, e.surface.nodes.size(),
+             1e6 * e.volume, 1e6 * e.labelled_volume, 100 * (e.volume / e.labelled_volume - 1));
   return {name, std::move(e.surface), 0, ""};
 }
 
@@ -105,21 +106,23 @@ double length(const std::string& text, const std::string& option, double low, do
   const bool is_length = unit != nullptr && unit->dimension == scenario::find_unit("mm")->dimension;
   const double value = is_length ? q->number * unit->factor : 0;
   if (!is_length || !(value >= low && value <= high))
-    throw InputError(fmt::format("{} \"{}\"; allowed a length with its unit from {} mm to {} mm, as \"1 mm\"", option, text,
-                                 low / units::mm, high / units::mm));
+    throw InputError(fmt::format("{} \"{}\"; allowed a length with its unit from {} mm to {} mm, as \"1 mm\"", option,
+                                 text, low / units::mm, high / units::mm));
   return value;
 }
 
 void add_organ_options(CLI::App& c, OrganOptions& o) {
   c.add_option("--labels", o.labels, "Label volume: NIfTI, NRRD or MetaImage");
-  c.add_option("--label", o.which, "Label of an organ in it; several make several organs, 1+2 makes one of two; all if silent");
+  c.add_option("--label", o.which,
+               "Label of an organ in it; several make several organs, 1+2 makes one of two; all if silent");
   c.add_option("--surface", o.surfaces, "Closed surface: STL, OBJ, PLY, VTP, glTF, GLB; several make several organs");
   c.add_option("--unit", o.unit, "Unit of the surfaces' files: m, cm, mm, um (glTF: m)");
   c.add_option("--frame", o.frame, "Where their +x, +y, +z point: RAS, LPS, LSA ... (glTF: LSA)");
   c.add_option("--part", o.part, "Only the node or mesh of this name in a glTF file");
   c.add_option("--scenario", o.scenario, "Scenario whose generated organs to take");
   c.add_option("--organ", o.organs, "Which of them: fetus, uterus")->capture_default_str();
-  c.add_option("--smoothing", o.smoothing, "Standard deviation of the Gaussian that takes the voxels' steps away [voxels]")
+  c.add_option("--smoothing", o.smoothing,
+               "Standard deviation of the Gaussian that takes the voxels' steps away [voxels]")
       ->capture_default_str();
   c.add_option("--spacing", o.spacing, "Length of the grid that a label's surface is drawn on; a voxel if silent");
   c.add_flag("--largest-part", o.largest, "Keep only the largest connected part of each label");

@@ -25,14 +25,16 @@ imaging::LabelVolume voxelise(const std::array<int, 3>& size, const Mat3& axes, 
   v.labels.resize(v.index(0, 0, size[2]));
   for (int k = 0; k < size[2]; ++k)
     for (int j = 0; j < size[1]; ++j)
-      for (int i = 0; i < size[0]; ++i) v.labels[v.index(i, j, k)] = label(v.position({double(i), double(j), double(k)}));
+      for (int i = 0; i < size[0]; ++i)
+        v.labels[v.index(i, j, k)] = label(v.position({double(i), double(j), double(k)}));
   return v;
 }
 
 std::string nifti_bytes(const imaging::LabelVolume& v, Form form) {
   std::string b(352, '\0');
   put<std::int32_t>(b, 0, 348);
-  const std::array<std::int16_t, 8> dim{3, std::int16_t(v.size[0]), std::int16_t(v.size[1]), std::int16_t(v.size[2]), 1, 1, 1, 1};
+  const std::array<std::int16_t, 8> dim{
+      3, std::int16_t(v.size[0]), std::int16_t(v.size[1]), std::int16_t(v.size[2]), 1, 1, 1, 1};
   std::memcpy(b.data() + 40, dim.data(), sizeof(dim));
   put<std::int16_t>(b, 70, 2);
   put<std::int16_t>(b, 72, 8);
@@ -68,8 +70,10 @@ std::string nrrd_bytes(const imaging::LabelVolume& v) {
   }
   const Vec3 o = 1e3 * lps.cwiseProduct(v.origin);
   return fmt::format(
-             "NRRD0004\n# made by a test\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\nsizes: {} {} "
-             "{}\nspace directions: {}\nkinds: domain domain domain\nspace units: \"mm\" \"mm\" \"mm\"\nencoding: raw\nspace "
+             "NRRD0004\n# made by a test\ntype: unsigned char\ndimension: 3\nspace: left-posterior-superior\nsizes: {} "
+             "{} "
+             "{}\nspace directions: {}\nkinds: domain domain domain\nspace units: \"mm\" \"mm\" \"mm\"\nencoding: "
+             "raw\nspace "
              "origin: ({},{},{})\n\n",
              v.size[0], v.size[1], v.size[2], directions, o.x(), o.y(), o.z()) +
          voxels(v);

@@ -19,7 +19,9 @@ fs::path phantom() {
   static const fs::path file = [] {
     const fs::path f = fresh("phantom.nii");
     const auto v = voxelise({70, 50, 34}, Vec3(0.001, 0.001, 0.0015).asDiagonal(), Vec3(-0.025, -0.025, -0.025),
-                            [](const Vec3& x) { return x.norm() < 0.02 ? 1 : (x - Vec3(0.028, 0, 0)).norm() < 0.01 ? 2 : 0; });
+                            [](const Vec3& x) {
+                              return x.norm() < 0.02 ? 1 : (x - Vec3(0.028, 0, 0)).norm() < 0.01 ? 2 : 0;
+                            });
     std::ofstream(f, std::ios::binary) << nifti_bytes(v, Form::both);
     return f;
   }();
@@ -39,8 +41,11 @@ std::vector<std::vector<std::string>> csv(const fs::path& file) {
 
 TEST(MeshCommand, PrecisionWritesItsContract) {
   const fs::path out = fresh("precision.csv"), log = out.string() + ".log";
-  ASSERT_EQ(wait_for(start({"mesh", "precision", "--labels", phantom().string(), "--label", "1", "--out", out.string(), "--samples", "20000"}, log)),
-            0) << text(log);
+  ASSERT_EQ(wait_for(start({"mesh", "precision", "--labels", phantom().string(), "--label", "1", "--out", out.string(),
+                            "--samples", "20000"},
+                           log)),
+            0)
+      << text(log);
   const auto rows = csv(out);
   ASSERT_EQ(rows.size(), 13u);
   EXPECT_THAT(std::vector<std::string>(rows[0].begin(), rows[0].begin() + 5),
@@ -57,9 +62,13 @@ TEST(MeshCommand, PrecisionWritesItsContract) {
 
 TEST(MeshCommand, VolumeMakesTouchingOrgansShareNodes) {
   const fs::path out = fresh("balls.msh"), log = out.string() + ".log";
-  ASSERT_EQ(wait_for(start({"mesh", "volume", "--labels", phantom().string(), "--size", "5 mm", "--size-of", "2=3 mm", "--out", out.string(),
-                            fs::path(out).replace_extension(".inp").string(), fs::path(out).replace_extension(".vtu").string(),
-                            fs::path(out).replace_extension(".stl").string()}, log)), 0) << text(log);
+  ASSERT_EQ(wait_for(start(
+                {"mesh", "volume", "--labels", phantom().string(), "--size", "5 mm", "--size-of", "2=3 mm", "--out",
+                 out.string(), fs::path(out).replace_extension(".inp").string(),
+                 fs::path(out).replace_extension(".vtu").string(), fs::path(out).replace_extension(".stl").string()},
+                log)),
+            0)
+      << text(log);
   const auto msh = text(out);
   EXPECT_THAT(msh, testing::HasSubstr("\"label_2_to_label_1\""));  // where they touch, facets of both
   EXPECT_THAT(msh, testing::HasSubstr("$EndElements"));
@@ -70,12 +79,17 @@ TEST(MeshCommand, VolumeMakesTouchingOrgansShareNodes) {
 
 TEST(MeshCommand, SurfaceIsSimplifiedAsAskedAndBadInputRefused) {
   const fs::path out = fresh("ball.stl"), log = out.string() + ".log";
-  ASSERT_EQ(wait_for(start({"mesh", "surface", "--labels", phantom().string(), "--label", "1", "--nodes", "500", "--out", out.string()}, log)), 0)
+  ASSERT_EQ(wait_for(start({"mesh", "surface", "--labels", phantom().string(), "--label", "1", "--nodes", "500",
+                            "--out", out.string()},
+                           log)),
+            0)
       << text(log);
   EXPECT_EQ(fs::file_size(out), 84u + 50u * (2 * 500 - 4));  // Euler: a closed surface of 500 nodes has 996 triangles
   EXPECT_EQ(wait_for(start({"mesh", "surface", "--surface", out.string(), "--out", out.string() + "2.stl"}, log)), 2);
   EXPECT_THAT(text(log), testing::HasSubstr("unit"));
-  EXPECT_EQ(wait_for(start({"mesh", "surface", "--labels", phantom().string(), "--label", "9", "--out", out.string()}, log)), 2);
+  EXPECT_EQ(
+      wait_for(start({"mesh", "surface", "--labels", phantom().string(), "--label", "9", "--out", out.string()}, log)),
+      2);
   EXPECT_THAT(text(log), testing::HasSubstr("label 9 does not occur; there are 1, 2"));
 }
 

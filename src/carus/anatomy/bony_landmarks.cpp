@@ -30,11 +30,13 @@ Nodes where(const Nodes& nodes, const std::function<bool(const Vec3&)>& keep) {
 /// The node that scores highest; what: for the message if there is none.
 Vec3 best(const Nodes& nodes, const std::string& what, const std::function<double(const Vec3&)>& score) {
   if (nodes.empty())
-    throw InputError(fmt::format(
-        "pelvis: {}: none of the bones' nodes is where it is looked for (docs/theory/geometry.md); are the bones those of "
-        "one upright pelvis, their labels in the right order?",
-        what));
-  return *std::max_element(nodes.begin(), nodes.end(), [&](const Vec3& a, const Vec3& b) { return score(a) < score(b); });
+    throw InputError(
+        fmt::format("pelvis: {}: none of the bones' nodes is where it is looked for (docs/theory/geometry.md); are the "
+                    "bones those of "
+                    "one upright pelvis, their labels in the right order?",
+                    what));
+  return *std::max_element(nodes.begin(), nodes.end(),
+                           [&](const Vec3& a, const Vec3& b) { return score(a) < score(b); });
 }
 
 /// The nearest of some nodes: candidates in cells of a grid.
@@ -103,22 +105,22 @@ Median median_landmarks(const PelvicBones& b) {
   const Vec3 right = mean(b.right.nodes), left = mean(b.left.nodes), across = (right - left).normalized();
   const Vec3 median = (right + left) / 2;
   if (across.x() < 0.9)
-    throw InputError(fmt::format(
-        "pelvis: the right innominate bone does not lie to the right of the left one (direction {:.2f}, {:.2f}, {:.2f} in "
-        "RAS); are the labels, or the frame's letters, exchanged?",
-        across.x(), across.y(), across.z()));
+    throw InputError(
+        fmt::format("pelvis: the right innominate bone does not lie to the right of the left one (direction {:.2f}, "
+                    "{:.2f}, {:.2f} in "
+                    "RAS); are the labels, or the frame's letters, exchanged?",
+                    across.x(), across.y(), across.z()));
   const auto joint = symphysis_of(b, median, across);
   const auto box = mesh::box(b.sacrum);
   const double upper = box.max().z() - box.sizes().z() / 3;
   Median m;
-  m.promontory = best(where(b.sacrum.nodes,
-                            [&](const Vec3& x) { return x.z() > upper && std::abs((x - median).dot(across)) < 0.010; }),
-                      "promontory", [](const Vec3& x) { return x.y(); });
+  m.promontory = best(
+      where(b.sacrum.nodes, [&](const Vec3& x) { return x.z() > upper && std::abs((x - median).dot(across)) < 0.010; }),
+      "promontory", [](const Vec3& x) { return x.y(); });
   m.top = best(joint, "top of the symphysis", [&](const Vec3& x) { return -(x - m.promontory).norm(); });
   const Vec3 down = long_axis(joint, -Vec3::UnitZ());
   m.bottom = best(joint, "bottom of the symphysis", [&](const Vec3& x) { return x.dot(down); });
-  m.symphysis_height =
-      (m.bottom - best(joint, "symphysis", [&](const Vec3& x) { return -x.dot(down); })).dot(down);
+  m.symphysis_height = (m.bottom - best(joint, "symphysis", [&](const Vec3& x) { return -x.dot(down); })).dot(down);
   // The conjugates lie in the median plane, the sacrum's nodes only near it.
   m.promontory -= (m.promontory - median).dot(across) * across;
   m.top -= (m.top - median).dot(across) * across;
@@ -176,14 +178,15 @@ class Finder {
              "ischial spine, " + name, [&](const Vec3& x) { return inward(x) - x.y() - x.z(); });
     const auto front = where(nodes, [](const Vec3& x) { return x.y() > 0; });
     const Vec3 low = best(front, "tuberosity, " + name, [](const Vec3& x) { return -x.z(); });
-    const auto tuber = where(
-        front, [&](const Vec3& x) { return x.z() < low.z() + 0.012 && std::abs(x.y() - low.y()) < 0.012; });
+    const auto tuber =
+        where(front, [&](const Vec3& x) { return x.z() < low.z() + 0.012 && std::abs(x.y() - low.y()) < 0.012; });
     p["tuber_" + name] = best(tuber, "tuberosity", inward);
     // The ramus' inner edge, half way from symphysis to tuberosity.
     const Vec3 S = p.at("symphysis_bottom"), T = p.at("tuber_" + name);
     const double half = (S.z() + T.z()) / 2;
-    p["ramus_" + name] = best(where(nodes, [&](const Vec3& x) { return std::abs(x.z() - half) < 0.004 && x.y() > T.y(); }),
-                              "inferior ramus, " + name, inward);
+    p["ramus_" + name] =
+        best(where(nodes, [&](const Vec3& x) { return std::abs(x.z() - half) < 0.004 && x.y() > T.y(); }),
+             "inferior ramus, " + name, inward);
   }
 
   void back() {
@@ -223,7 +226,8 @@ class Finder {
       std::array<double, 2> inner{far, far};
       for (const int side : {0, 1})
         for (const auto& x : sides_[side])
-          if (std::abs(x.y() - y) < 0.003 && std::abs(x.z()) < 0.010) inner[side] = std::min(inner[side], std::abs(x.x()));
+          if (std::abs(x.y() - y) < 0.003 && std::abs(x.z()) < 0.010)
+            inner[side] = std::min(inner[side], std::abs(x.x()));
       if (inner[0] + inner[1] < 1) widest = std::max(widest, inner[0] + inner[1]);
     }
     return widest;

@@ -40,10 +40,10 @@ struct BonyLandmarks {
 ///     frame             origin halfway between promontory and top of the symphysis, y along that line, x to the right
 ///     spines            on each side, of the ischium's nodes 50 to 95 mm below the inlet (those not more than 30 mm
 ///                       behind its centre), the one farthest inward, backward and downward alike
-///     tuberosities      on each side, of the ischium's nodes within 12 mm of its lowest in height and in y, the innermost
-///     coccyx tip        the coccyx' node farthest from the sacrum
-///     sacrum tip        the sacrum's node nearest to the coccyx
-///     hinge             on the sacrum's front in the median plane, at 0.55 of the way from promontory to tip, as in the
+///     tuberosities      on each side, of the ischium's nodes within 12 mm of its lowest in height and in y, the
+///     innermost coccyx tip        the coccyx' node farthest from the sacrum sacrum tip        the sacrum's node
+///     nearest to the coccyx hinge             on the sacrum's front in the median plane, at 0.55 of the way from
+///     promontory to tip, as in the
 ///                       generated pelvis
 ///
 /// Throws InputError, saying which landmark is nowhere and why, if the bones are not those of one upright pelvis.

@@ -90,8 +90,8 @@ Extracted extract_surface(const LabelVolume& volume, std::int32_t label, const E
     throw InputError(fmt::format("{}: smoothing {}; allowed 0.3 to 3 voxels", name, o.smoothing));
   const auto v = crop(volume, label, static_cast<int>(std::ceil(3 * o.smoothing)) + 2, name);
   Extracted e;
-  e.labelled_volume = static_cast<double>(v.labels.size() - std::count(v.labels.begin(), v.labels.end(), 0)) *
-                      v.voxel_volume();
+  e.labelled_volume =
+      static_cast<double>(v.labels.size() - std::count(v.labels.begin(), v.labels.end(), 0)) * v.voxel_volume();
   auto values = smoothed_indicator(v, o.smoothing);
   const auto image = resampled(values, v, o.spacing);
   // Secant steps on level -> volume. Cubic interpolation, which overshoots, and fairing move it a little from the first

@@ -10,8 +10,8 @@
 namespace carus::imaging {
 
 struct ExtractOptions {
-  double smoothing = 0.8;  ///< standard deviation of the Gaussian that takes the steps away [voxels], 0.3 to 3
-  double spacing = 0;      ///< of the grid that the surface is drawn on [m]; 0: the smallest of the voxels' spacings
+  double smoothing = 0.8;     ///< standard deviation of the Gaussian that takes the steps away [voxels], 0.3 to 3
+  double spacing = 0;         ///< of the grid that the surface is drawn on [m]; 0: the smallest of the voxels' spacings
   bool largest_part = false;  ///< drop all but the largest connected part
 };
 

@@ -48,7 +48,8 @@ class Reader {
     for (std::size_t i = 0; i < nodes.size(); ++i)
       if (child[i] == 0) walk(i, Eigen::Affine3d::Identity(), part_.empty(), 0);
     if (s_.triangles.empty())
-      refuse(part_.empty() ? "has no triangles" : fmt::format("has no triangles in a node or mesh named \"{}\"", part_));
+      refuse(part_.empty() ? "has no triangles"
+                           : fmt::format("has no triangles in a node or mesh named \"{}\"", part_));
     return std::move(s_);
   }
 
@@ -61,7 +62,8 @@ class Reader {
       if (bytes.size() < 20 || number_at<std::uint32_t>(bytes, 8) != bytes.size())
         refuse(fmt::format("is truncated: {} bytes are not what its header promises", bytes.size()));
       const std::size_t length = number_at<std::uint32_t>(bytes, 12);
-      if (bytes.substr(16, 4) != "JSON" || length > bytes.size() - 20) refuse("its first chunk is no JSON, or truncated");
+      if (bytes.substr(16, 4) != "JSON" || length > bytes.size() - 20)
+        refuse("its first chunk is no JSON, or truncated");
       text = bytes.substr(20, length);
       if (const auto rest = bytes.substr(20 + length); rest.size() >= 8) {
         const std::size_t size = number_at<std::uint32_t>(rest, 0);
@@ -100,9 +102,9 @@ class Reader {
     t.translate(vector("translation", Vec3::Zero()));
     if (n.contains("rotation")) {
       const auto& q = n.at("rotation");
-      t.rotate(Eigen::Quaterniond(q.at(3).get<double>(), q.at(0).get<double>(), q.at(1).get<double>(),
-                                  q.at(2).get<double>())
-                   .normalized());
+      t.rotate(
+          Eigen::Quaterniond(q.at(3).get<double>(), q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>())
+              .normalized());
     }
     t.scale(vector("scale", Vec3::Ones()));
     return t;
@@ -135,20 +137,26 @@ class Reader {
     const auto& a = j_.at("accessors").at(accessor);
     if (a.at("type") != type || a.contains("sparse")) refuse("an accessor is sparse, or of the wrong type");
     const int component = a.at("componentType").get<int>();
-    const std::size_t bytes = component == 5121 ? 1 : component == 5123 ? 2 : component == 5125 || component == 5126 ? 4 : 0;
-    if (bytes == 0 || (type == "VEC3") != (component == 5126)) refuse(fmt::format("component type {} in an accessor", component));
+    const std::size_t bytes = component == 5121                        ? 1
+                              : component == 5123                      ? 2
+                              : component == 5125 || component == 5126 ? 4
+                                                                       : 0;
+    if (bytes == 0 || (type == "VEC3") != (component == 5126))
+      refuse(fmt::format("component type {} in an accessor", component));
     const std::size_t per = type == "VEC3" ? 3 : 1, count = a.at("count").get<std::size_t>();
     const auto& view = j_.at("bufferViews").at(a.at("bufferView").get<std::size_t>());
     const auto& data = buffer(view.at("buffer").get<std::size_t>());
-    const std::size_t begin = view.value("byteOffset", std::size_t(0)), length = view.at("byteLength").get<std::size_t>(),
-                      offset = a.value("byteOffset", std::size_t(0)), stride = view.value("byteStride", per * bytes);
-    if (begin > data.size() || length > data.size() - begin || offset > length || stride < per * bytes || stride > 65536 ||
-        count > length || (count > 0 && ((count - 1) * stride + per * bytes > length - offset)))
+    const std::size_t begin = view.value("byteOffset", std::size_t(0)),
+                      length = view.at("byteLength").get<std::size_t>(), offset = a.value("byteOffset", std::size_t(0)),
+                      stride = view.value("byteStride", per * bytes);
+    if (begin > data.size() || length > data.size() - begin || offset > length || stride < per * bytes ||
+        stride > 65536 || count > length || (count > 0 && ((count - 1) * stride + per * bytes > length - offset)))
       refuse("an accessor reaches beyond its buffer");
     std::vector<double> values;
     values.reserve(count * per);
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < per; ++k) values.push_back(number(data, begin + offset + i * stride + k * bytes, component));
+      for (std::size_t k = 0; k < per; ++k)
+        values.push_back(number(data, begin + offset + i * stride + k * bytes, component));
     return values;
   }
 

@@ -12,9 +12,9 @@ namespace carus::imaging {
 /// Voxels with a label each, 0 outside, as segmentation programs write them.
 struct LabelVolume {
   std::array<int, 3> size{};
-  Mat3 axes = Mat3::Identity();  ///< columns: the step from one voxel to the next along i, j, k [m], in RAS; may be
-                                 ///< oblique, anisotropic, left-handed
-  Vec3 origin = Vec3::Zero();    ///< centre of voxel (0, 0, 0) [m], in RAS
+  Mat3 axes = Mat3::Identity();      ///< columns: the step from one voxel to the next along i, j, k [m], in RAS; may be
+                                     ///< oblique, anisotropic, left-handed
+  Vec3 origin = Vec3::Zero();        ///< centre of voxel (0, 0, 0) [m], in RAS
   std::vector<std::int32_t> labels;  ///< i fastest
 
   [[nodiscard]] std::size_t index(int i, int j, int k) const {

@@ -32,13 +32,15 @@ TextHeader header_of(std::string_view bytes, const std::string& name) {
 }
 
 Scalar scalar_of(const std::string& type, const std::string& name) {
-  static const std::map<std::string, Scalar> types{
-      {"MET_UCHAR", Scalar::u8},     {"MET_CHAR", Scalar::i8},  {"MET_USHORT", Scalar::u16}, {"MET_SHORT", Scalar::i16},
-      {"MET_UINT", Scalar::u32},     {"MET_INT", Scalar::i32},  {"MET_ULONG_LONG", Scalar::u64},
-      {"MET_LONG_LONG", Scalar::i64}, {"MET_FLOAT", Scalar::f32}, {"MET_DOUBLE", Scalar::f64}};
+  static const std::map<std::string, Scalar> types{{"MET_UCHAR", Scalar::u8},       {"MET_CHAR", Scalar::i8},
+                                                   {"MET_USHORT", Scalar::u16},     {"MET_SHORT", Scalar::i16},
+                                                   {"MET_UINT", Scalar::u32},       {"MET_INT", Scalar::i32},
+                                                   {"MET_ULONG_LONG", Scalar::u64}, {"MET_LONG_LONG", Scalar::i64},
+                                                   {"MET_FLOAT", Scalar::f32},      {"MET_DOUBLE", Scalar::f64}};
   const auto it = types.find(type);
   if (it == types.end())
-    throw InputError(fmt::format("{}: ElementType {}; allowed MET_UCHAR to MET_LONG_LONG, MET_FLOAT, MET_DOUBLE", name, type));
+    throw InputError(
+        fmt::format("{}: ElementType {}; allowed MET_UCHAR to MET_LONG_LONG, MET_FLOAT, MET_DOUBLE", name, type));
   return it->second;
 }
 

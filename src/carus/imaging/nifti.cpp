@@ -16,7 +16,8 @@ namespace {
 class Header {
  public:
   Header(std::string_view bytes, const std::string& name) : b_(bytes), name_(name) {
-    if (bytes.size() < 352) throw InputError(fmt::format("{}: is truncated: {} bytes, a NIfTI header has 352", name, bytes.size()));
+    if (bytes.size() < 352)
+      throw InputError(fmt::format("{}: is truncated: {} bytes, a NIfTI header has 352", name, bytes.size()));
     const auto size = number_at<std::int32_t>(b_, 0);
     swap_ = size != 348;
     if (number_at<std::int32_t>(b_, 0, swap_) != 348)
@@ -45,9 +46,9 @@ class Header {
     return n;
   }
   [[nodiscard]] Scalar scalar() const {
-    static const std::map<int, Scalar> types{{2, Scalar::u8},    {4, Scalar::i16},  {8, Scalar::i32},   {16, Scalar::f32},
-                                             {64, Scalar::f64},  {256, Scalar::i8}, {512, Scalar::u16}, {768, Scalar::u32},
-                                             {1024, Scalar::i64}, {1280, Scalar::u64}};
+    static const std::map<int, Scalar> types{
+        {2, Scalar::u8},   {4, Scalar::i16},   {8, Scalar::i32},   {16, Scalar::f32},   {64, Scalar::f64},
+        {256, Scalar::i8}, {512, Scalar::u16}, {768, Scalar::u32}, {1024, Scalar::i64}, {1280, Scalar::u64}};
     const auto it = types.find(i16(70));
     if (it == types.end())
       throw InputError(fmt::format("{}: voxels of NIfTI type {}; labels are integers or real numbers", name_, i16(70)));

@@ -22,7 +22,8 @@ TextHeader header_of(std::string_view bytes, const std::string& name) {
       h.end = bytes.size();
       return h;
     }
-    if (end - at > 100000) throw InputError(fmt::format("{}: is no NRRD file: a header line of {} bytes", name, end - at));
+    if (end - at > 100000)
+      throw InputError(fmt::format("{}: is no NRRD file: a header line of {} bytes", name, end - at));
     const auto line = trimmed(bytes.substr(at, end - at));
     at = end + 1;
     if (line.empty()) {
@@ -37,18 +38,17 @@ TextHeader header_of(std::string_view bytes, const std::string& name) {
 
 Scalar scalar_of(const std::string& type, const std::string& name) {
   static const std::map<std::string, Scalar> types{
-      {"signed char", Scalar::i8},     {"int8", Scalar::i8},         {"int8_t", Scalar::i8},
-      {"uchar", Scalar::u8},           {"unsigned char", Scalar::u8}, {"uint8", Scalar::u8},
-      {"uint8_t", Scalar::u8},         {"short", Scalar::i16},       {"signed short", Scalar::i16},
-      {"int16", Scalar::i16},          {"int16_t", Scalar::i16},     {"ushort", Scalar::u16},
-      {"unsigned short", Scalar::u16}, {"uint16", Scalar::u16},      {"uint16_t", Scalar::u16},
-      {"int", Scalar::i32},            {"signed int", Scalar::i32},  {"int32", Scalar::i32},
-      {"int32_t", Scalar::i32},        {"uint", Scalar::u32},        {"unsigned int", Scalar::u32},
-      {"uint32", Scalar::u32},         {"uint32_t", Scalar::u32},    {"longlong", Scalar::i64},
-      {"int64", Scalar::i64},          {"int64_t", Scalar::i64},     {"uint64", Scalar::u64},
-      {"uint64_t", Scalar::u64},       {"float", Scalar::f32},       {"double", Scalar::f64}};
+      {"signed char", Scalar::i8},     {"int8", Scalar::i8},     {"int8_t", Scalar::i8},    {"uchar", Scalar::u8},
+      {"unsigned char", Scalar::u8},   {"uint8", Scalar::u8},    {"uint8_t", Scalar::u8},   {"short", Scalar::i16},
+      {"signed short", Scalar::i16},   {"int16", Scalar::i16},   {"int16_t", Scalar::i16},  {"ushort", Scalar::u16},
+      {"unsigned short", Scalar::u16}, {"uint16", Scalar::u16},  {"uint16_t", Scalar::u16}, {"int", Scalar::i32},
+      {"signed int", Scalar::i32},     {"int32", Scalar::i32},   {"int32_t", Scalar::i32},  {"uint", Scalar::u32},
+      {"unsigned int", Scalar::u32},   {"uint32", Scalar::u32},  {"uint32_t", Scalar::u32}, {"longlong", Scalar::i64},
+      {"int64", Scalar::i64},          {"int64_t", Scalar::i64}, {"uint64", Scalar::u64},   {"uint64_t", Scalar::u64},
+      {"float", Scalar::f32},          {"double", Scalar::f64}};
   const auto it = types.find(lower(type));
-  if (it == types.end()) throw InputError(fmt::format("{}: type \"{}\"; allowed the integer types, float, double", name, type));
+  if (it == types.end())
+    throw InputError(fmt::format("{}: type \"{}\"; allowed the integer types, float, double", name, type));
   return it->second;
 }
 
@@ -72,10 +72,11 @@ double unit_of(const TextHeader& h, const std::string& name, std::vector<std::st
     return 1e-3;
   }
   const auto unit = words(it->second);
-  static const std::map<std::string, double> known{{"\"mm\"", 1e-3}, {"\"m\"", 1.0}, {"\"um\"", 1e-6}, {"\"cm\"", 1e-2}};
+  static const std::map<std::string, double> known{
+      {"\"mm\"", 1e-3}, {"\"m\"", 1.0}, {"\"um\"", 1e-6}, {"\"cm\"", 1e-2}};
   if (unit.size() != 3 || unit[0] != unit[1] || unit[0] != unit[2] || !known.contains(unit[0]))
-    throw InputError(fmt::format("{}: space units {}; allowed the same of \"mm\", \"m\", \"cm\", \"um\" three times", name,
-                                 it->second));
+    throw InputError(fmt::format("{}: space units {}; allowed the same of \"mm\", \"m\", \"cm\", \"um\" three times",
+                                 name, it->second));
   return known.at(unit[0]);
 }
 
@@ -105,7 +106,8 @@ std::string voxels_of(std::string_view bytes, const TextHeader& h, const std::fi
 LabelFile read_nrrd(std::string_view bytes, const std::filesystem::path& folder, const std::string& name) {
   const auto h = header_of(bytes, name);
   if (const auto& d = required(h, "dimension", name); d != "3")
-    throw InputError(fmt::format("{}: dimension {}; a label volume has 3: collapse the layers of overlapping segments", name, d));
+    throw InputError(
+        fmt::format("{}: dimension {}; a label volume has 3: collapse the layers of overlapping segments", name, d));
   LabelFile f;
   const auto sizes = numbers(required(h, "sizes", name), 3, "sizes", name);
   std::array<std::int64_t, 3> size{};

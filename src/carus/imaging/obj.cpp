@@ -32,13 +32,15 @@ mesh::Surface read_obj(std::string_view bytes, const std::string& name) {
     const auto end = std::min(bytes.find('\n', at), bytes.size());
     const auto text = bytes.substr(at, end - at);
     at = end + 1;
-    const bool node = text.starts_with("v ") || text.starts_with("v\t"), face = text.starts_with("f ") || text.starts_with("f\t");
+    const bool node = text.starts_with("v ") || text.starts_with("v\t"),
+               face = text.starts_with("f ") || text.starts_with("f\t");
     if (!node && !face) continue;
     auto w = words(text.substr(2));
     if (face) {
       std::vector<std::int32_t> polygon;
       for (const auto& corner : w) polygon.push_back(index_of(corner, s.nodes.size(), line, name));
-      if (polygon.size() < 3) throw InputError(fmt::format("{}: line {}: a face of {} corners", name, line, polygon.size()));
+      if (polygon.size() < 3)
+        throw InputError(fmt::format("{}: line {}: a face of {} corners", name, line, polygon.size()));
       for (std::size_t k = 2; k < polygon.size(); ++k) s.triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
     } else {
       if (w.size() < 3) throw InputError(fmt::format("{}: line {}: a node of {} numbers", name, line, w.size()));

@@ -29,10 +29,10 @@ enum class Encoding { text, little, big };
 
 Scalar scalar_of(const std::string& type, const std::string& name) {
   static const std::map<std::string, Scalar> types{
-      {"char", Scalar::i8},    {"int8", Scalar::i8},     {"uchar", Scalar::u8},    {"uint8", Scalar::u8},
-      {"short", Scalar::i16},  {"int16", Scalar::i16},   {"ushort", Scalar::u16},  {"uint16", Scalar::u16},
-      {"int", Scalar::i32},    {"int32", Scalar::i32},   {"uint", Scalar::u32},    {"uint32", Scalar::u32},
-      {"float", Scalar::f32},  {"float32", Scalar::f32}, {"double", Scalar::f64},  {"float64", Scalar::f64}};
+      {"char", Scalar::i8},   {"int8", Scalar::i8},     {"uchar", Scalar::u8},   {"uint8", Scalar::u8},
+      {"short", Scalar::i16}, {"int16", Scalar::i16},   {"ushort", Scalar::u16}, {"uint16", Scalar::u16},
+      {"int", Scalar::i32},   {"int32", Scalar::i32},   {"uint", Scalar::u32},   {"uint32", Scalar::u32},
+      {"float", Scalar::f32}, {"float32", Scalar::f32}, {"double", Scalar::f64}, {"float64", Scalar::f64}};
   const auto it = types.find(type);
   if (it == types.end()) throw InputError(fmt::format("{}: property of unknown type \"{}\"", name, type.substr(0, 40)));
   return it->second;
@@ -80,7 +80,8 @@ class Reader {
         else if (w[1] == "binary_big_endian")
           encoding_ = Encoding::big;
         else
-          refuse(fmt::format("format \"{}\"; allowed ascii, binary_little_endian, binary_big_endian", w[1].substr(0, 40)));
+          refuse(
+              fmt::format("format \"{}\"; allowed ascii, binary_little_endian, binary_big_endian", w[1].substr(0, 40)));
       } else if (w[0] == "element" && w.size() == 3) {
         const double n = numbers(w[2], 1, "element " + w[1], name_)[0];
         // Not even a byte for each: refused before anything is set aside for them.
@@ -159,7 +160,8 @@ class Reader {
       std::vector<std::int32_t> polygon;
       for (std::size_t k = 0; k < n; ++k) {
         const double v = number(p.type);
-        polygon.push_back(v >= 0 && v <= 2147483647 ? static_cast<std::int32_t>(v) : -1);  // -1: mesh::closed refuses it
+        polygon.push_back(v >= 0 && v <= 2147483647 ? static_cast<std::int32_t>(v)
+                                                    : -1);  // -1: mesh::closed refuses it
       }
       if (e.name != "face" || !p.list || (p.name != "vertex_indices" && p.name != "vertex_index")) continue;
       for (std::size_t k = 2; k < n; ++k) s.triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});

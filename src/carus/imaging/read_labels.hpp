@@ -17,8 +17,8 @@ struct LabelFile {
 };
 
 /// Label volume of a file: NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr, .seg.nrrd) or MetaImage (.mha, .mhd), by what
-/// its first bytes say. Orientation, oblique and anisotropic voxels as the file states them, turned into RAS and metres.
-/// Throws InputError for whatever else is in the file: truncated or lying headers, images that are no labels,
+/// its first bytes say. Orientation, oblique and anisotropic voxels as the file states them, turned into RAS and
+/// metres. Throws InputError for whatever else is in the file: truncated or lying headers, images that are no labels,
 /// orientation that the file does not state. Reads at most 2 GiB.
 LabelFile read_labels(const std::filesystem::path& file);
 

@@ -38,8 +38,8 @@ double SmoothLabels::Field::at(const Vec3& x) const {
   for (int corner = 0; corner < 8; ++corner) {
     const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
     const double w = (i != 0 ? t[0] : 1 - t[0]) * (j != 0 ? t[1] : 1 - t[1]) * (k != 0 ? t[2] : 1 - t[2]);
-    sum += w * static_cast<double>(
-                   values[(static_cast<std::size_t>(c[2] + k) * size[1] + c[1] + j) * size[0] + c[0] + i]);
+    sum +=
+        w * static_cast<double>(values[(static_cast<std::size_t>(c[2] + k) * size[1] + c[1] + j) * size[0] + c[0] + i]);
   }
   return sum;
 }

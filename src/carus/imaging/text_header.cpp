@@ -38,7 +38,8 @@ const std::string& required(const TextHeader& h, const std::string& key, const s
 
 std::vector<double> numbers(const std::string& text, std::size_t n, const std::string& key, const std::string& name) {
   std::string plain = text;
-  std::replace_if(plain.begin(), plain.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
+  std::replace_if(
+      plain.begin(), plain.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
   std::vector<double> values;
   for (const auto& w : words(plain)) {
     if (w == "none") continue;
@@ -48,8 +49,7 @@ std::vector<double> numbers(const std::string& text, std::size_t n, const std::s
       throw InputError(fmt::format("{}: {}: \"{}\" is no number", name, key, w.substr(0, 40)));
     values.push_back(v);
   }
-  if (values.size() != n)
-    throw InputError(fmt::format("{}: {}: {} numbers, {} expected", name, key, values.size(), n));
+  if (values.size() != n) throw InputError(fmt::format("{}: {}: {} numbers, {} expected", name, key, values.size(), n));
   return values;
 }
 

@@ -104,8 +104,9 @@ void check_geometry(const LabelVolume& v, const std::string& name) {
   const Vec3 h = v.spacing();
   for (int k = 0; k < 3; ++k)
     if (!(h[k] >= 1e-6 && h[k] <= 0.1))
-      throw InputError(fmt::format("{}: voxels of {:.4g} x {:.4g} x {:.4g} mm; each from 0.001 to 100; is the unit right?",
-                                   name, 1e3 * h[0], 1e3 * h[1], 1e3 * h[2]));
+      throw InputError(
+          fmt::format("{}: voxels of {:.4g} x {:.4g} x {:.4g} mm; each from 0.001 to 100; is the unit right?", name,
+                      1e3 * h[0], 1e3 * h[1], 1e3 * h[2]));
   if (!(v.voxel_volume() > 1e-3 * h.prod()))
     throw InputError(fmt::format("{}: the three axes of its voxels lie in a plane", name));
   if (!(v.origin.cwiseAbs().maxCoeff() < 1e3))

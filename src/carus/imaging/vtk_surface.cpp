@@ -38,8 +38,8 @@ mesh::Surface from_vtk(vtkPolyData& data) {
     const vtkIdType* p = nullptr;
     cells->GetCurrentCell(n, p);
     for (vtkIdType k = 2; k < n; ++k)
-      s.triangles.push_back({static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[k - 1]),
-                             static_cast<std::int32_t>(p[k])});
+      s.triangles.push_back(
+          {static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[k - 1]), static_cast<std::int32_t>(p[k])});
   }
   return s;
 }
@@ -63,7 +63,8 @@ void run(vtkAlgorithm& algorithm, const std::string& name) {
   if (problem.empty()) return;
   while (!problem.empty() && std::isspace(static_cast<unsigned char>(problem.back())) != 0) problem.pop_back();
   const auto end_of_place = problem.find("): ");  // "ERROR: In file, line n\nClass (0x...): what"
-  throw InputError(fmt::format("{}: {}", name, end_of_place == std::string::npos ? problem : problem.substr(end_of_place + 3)));
+  throw InputError(
+      fmt::format("{}: {}", name, end_of_place == std::string::npos ? problem : problem.substr(end_of_place + 3)));
 }
 
 }  // namespace carus::imaging

@@ -17,6 +17,7 @@ struct NodeField {
 
 /// Writes a surface in RAS and millimetres, whole or not at all: .stl, .ply or, with fields, .vtp, by the name's
 /// extension. Throws InputError for other extensions or if it cannot be written.
-void write_surface(const mesh::Surface& s, const std::filesystem::path& file, const std::vector<NodeField>& fields = {});
+void write_surface(const mesh::Surface& s, const std::filesystem::path& file,
+                   const std::vector<NodeField>& fields = {});
 
 }  // namespace carus::imaging

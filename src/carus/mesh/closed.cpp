@@ -85,8 +85,8 @@ class Closer {
   }
 
   void drop_triangles() {
-    const auto degenerate = std::erase_if(
-        s_.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    const auto degenerate =
+        std::erase_if(s_.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
     if (degenerate > 0) tell(fmt::format("{} triangles with two corners in one dropped", degenerate));
     std::map<Triangle, int> seen;
     const auto repeated = std::erase_if(s_.triangles, [&](Triangle t) {
@@ -119,9 +119,10 @@ class Closer {
         if (++e.count == 3 && crowded++ == 0) where = (s_.nodes[a] + s_.nodes[b]) / 2;
       }
     if (crowded > 0)
-      refuse(fmt::format("{} edges have more than two triangles, the first at {}; which side is inside cannot be told; "
-                         "separate the shells that touch there",
-                         crowded, place(where)));
+      refuse(
+          fmt::format("{} edges have more than two triangles, the first at {}; which side is inside cannot be told; "
+                      "separate the shells that touch there",
+                      crowded, place(where)));
   }
 
   [[nodiscard]] bool runs(std::int32_t t, std::int32_t a, std::int32_t b) const {
@@ -146,8 +147,7 @@ class Closer {
           if (e.count < 2) continue;
           const auto other = e.triangles[0] == t ? e.triangles[1] : e.triangles[0];
           if (!runs(other, b, a)) {
-            if (done[other])
-              refuse(fmt::format("cannot be oriented (like a Moebius strip) at {}", place(s_.nodes[a])));
+            if (done[other]) refuse(fmt::format("cannot be oriented (like a Moebius strip) at {}", place(s_.nodes[a])));
             std::swap(s_.triangles[other][1], s_.triangles[other][2]);
             ++turned;
           }
@@ -181,9 +181,10 @@ class Closer {
         i = to;
       }
       if (static_cast<int>(loop.size()) > largest)
-        refuse(fmt::format("is not closed: {} open edges, a hole of {} edges at {}; holes of up to {} edges are closed, "
-                           "close this one in the program that made the surface",
-                           open, loop.size(), place(s_.nodes[loop.front()]), largest));
+        refuse(
+            fmt::format("is not closed: {} open edges, a hole of {} edges at {}; holes of up to {} edges are closed, "
+                        "close this one in the program that made the surface",
+                        open, loop.size(), place(s_.nodes[loop.front()]), largest));
       fill(loop);
       ++filled;
     }
@@ -235,8 +236,7 @@ class Closer {
 
   [[nodiscard]] double signed_volume(const Triangles& triangles, const Vec3& o) const {
     double v = 0;
-    for (const auto& t : triangles)
-      v += (s_.nodes[t[0]] - o).dot((s_.nodes[t[1]] - o).cross(s_.nodes[t[2]] - o)) / 6;
+    for (const auto& t : triangles) v += (s_.nodes[t[0]] - o).dot((s_.nodes[t[1]] - o).cross(s_.nodes[t[2]] - o)) / 6;
     return v;
   }
   [[nodiscard]] double winding(const Triangles& triangles, const Vec3& x) const {

@@ -19,8 +19,7 @@ double volume(const Surface& s) {
   if (s.nodes.empty()) return 0;
   const Vec3 o = box(s).center();  // near the surface: less is lost by cancellation
   double v = 0;
-  for (const auto& t : s.triangles)
-    v += (s.nodes[t[0]] - o).dot((s.nodes[t[1]] - o).cross(s.nodes[t[2]] - o)) / 6;
+  for (const auto& t : s.triangles) v += (s.nodes[t[0]] - o).dot((s.nodes[t[1]] - o).cross(s.nodes[t[2]] - o)) / 6;
   return v;
 }
 

@@ -94,10 +94,11 @@ void require_room(Anatomy& a, const Uterus& uterus, const Pelvis& pelvis) {
       o.depth * 1e3, name_of(pelvis.label(o.where)), o.where.x() * 1e3, o.where.y() * 1e3, o.where.z() * 1e3,
       o.volume * 1e6);
   if (o.depth > most_overlap)
-    throw InputError(fmt::format(
-        "pelvis.from: {}; at most {:.0f} mm can give way; lower canal.radius or uterus.wall_canal, or set pelvis.fit_canal "
-        "to false and lay canal.bend_start and bend_radius yourself",
-        told, most_overlap * 1e3));
+    throw InputError(
+        fmt::format("pelvis.from: {}; at most {:.0f} mm can give way; lower canal.radius or uterus.wall_canal, or set "
+                    "pelvis.fit_canal "
+                    "to false and lay canal.bend_start and bend_radius yourself",
+                    told, most_overlap * 1e3));
   if (o.depth > 0) a.warnings.push_back(told + "; it gives way in the mesh");
 }
 

@@ -41,7 +41,8 @@ struct ClosedSolid::Search {
 };
 
 ClosedSolid::ClosedSolid(const mesh::Surface& surface) : search_(std::make_unique<Search>(surface)) {
-  static_cast<void>(contains(surface.nodes.at(0)));  // what the search sets up at its first question, before threads ask
+  static_cast<void>(
+      contains(surface.nodes.at(0)));  // what the search sets up at its first question, before threads ask
 }
 ClosedSolid::~ClosedSolid() = default;
 ClosedSolid::ClosedSolid(ClosedSolid&&) noexcept = default;
@@ -69,10 +70,11 @@ void require_no_self_intersection(const mesh::Surface& surface, const std::strin
   Vec3 where = Vec3::Zero();
   for (const auto v : m.vertices_around_face(m.halfedge(pairs[0].first)))
     where += Vec3(m.point(v).x(), m.point(v).y(), m.point(v).z()) / 3;
-  throw InputError(fmt::format(
-      "{}: {} pairs of triangles cut through each other, the first at ({:.1f}, {:.1f}, {:.1f}) mm; which side is inside "
-      "cannot be told there; repair it in the program that made it, or mesh from labels",
-      name, pairs.size(), 1e3 * where.x(), 1e3 * where.y(), 1e3 * where.z()));
+  throw InputError(
+      fmt::format("{}: {} pairs of triangles cut through each other, the first at ({:.1f}, {:.1f}, {:.1f}) mm; which "
+                  "side is inside "
+                  "cannot be told there; repair it in the program that made it, or mesh from labels",
+                  name, pairs.size(), 1e3 * where.x(), 1e3 * where.y(), 1e3 * where.z()));
 }
 
 }  // namespace carus::meshing

@@ -16,7 +16,7 @@ struct PrecisionRow {
   [[nodiscard]] double alpha(double d_organ) const { return 100 * (d_organ - deviation.mean()) / d_organ; }
 };
 struct Precision {
-  std::vector<PrecisionRow> rows;      ///< one per reduction, in rising order
+  std::vector<PrecisionRow> rows;       ///< one per reduction, in rising order
   std::vector<mesh::Surface> surfaces;  ///< the simplified ones
 };
 

@@ -22,7 +22,8 @@ using Out = std::back_insert_iterator<std::string>;
 std::string name_of(const Names& names, std::int32_t label) {
   const auto it = names.find(label);
   std::string n = it == names.end() ? fmt::format("label_{}", label) : it->second;
-  std::replace_if(n.begin(), n.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+  std::replace_if(
+      n.begin(), n.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
   return n;
 }
 
@@ -64,7 +65,8 @@ std::string msh(const mesh::TetMesh& m, const Names& names) {
   for (const auto l : labels) fmt::format_to(out, "3 {} \"{}\"\n", volumes[l] = ++number, name_of(names, l));
   fmt::format_to(out, "$EndPhysicalNames\n$Nodes\n{}\n", m.nodes.size());
   for (std::size_t i = 0; i < m.nodes.size(); ++i)
-    fmt::format_to(out, "{} {:.9g} {:.9g} {:.9g}\n", i + 1, 1e3 * m.nodes[i].x(), 1e3 * m.nodes[i].y(), 1e3 * m.nodes[i].z());
+    fmt::format_to(out, "{} {:.9g} {:.9g} {:.9g}\n", i + 1, 1e3 * m.nodes[i].x(), 1e3 * m.nodes[i].y(),
+                   1e3 * m.nodes[i].z());
   fmt::format_to(out, "$EndNodes\n$Elements\n{}\n", triangles + m.tets.size());
   std::size_t element = 0;
   number = 0;
@@ -85,7 +87,8 @@ std::string inp(const mesh::TetMesh& m, const Names& names) {
   std::string text = "*HEADING\nCarus; millimetres, RAS\n*NODE\n";
   Out out(text);
   for (std::size_t i = 0; i < m.nodes.size(); ++i)
-    fmt::format_to(out, "{}, {:.9g}, {:.9g}, {:.9g}\n", i + 1, 1e3 * m.nodes[i].x(), 1e3 * m.nodes[i].y(), 1e3 * m.nodes[i].z());
+    fmt::format_to(out, "{}, {:.9g}, {:.9g}, {:.9g}\n", i + 1, 1e3 * m.nodes[i].x(), 1e3 * m.nodes[i].y(),
+                   1e3 * m.nodes[i].z());
   for (const auto label : std::set<std::int32_t>(m.labels.begin(), m.labels.end())) {
     fmt::format_to(out, "*ELEMENT, TYPE=C3D4, ELSET={}\n", name_of(names, label));
     for (std::size_t e = 0; e < m.tets.size(); ++e)

@@ -45,9 +45,10 @@ void check(const Scenario& s, const anatomy::BonyLandmarks& l) {
     if (it == l.measures.end()) continue;
     const double unit = leaf.key->unit == "deg" ? units::deg : units::mm, value = it->second / unit;
     if (!(value >= leaf.key->minimum && value <= leaf.key->maximum))
-      problems.push_back(fmt::format(
-          "{}: {}: {} measures {:.1f} {} there; allowed {}; are the labels those of a whole pelvis, in the right order?",
-          s.file, leaf.path, s.anatomy.bones_from.file, value, leaf.key->unit, allowed(*leaf.key)));
+      problems.push_back(
+          fmt::format("{}: {}: {} measures {:.1f} {} there; allowed {}; are the labels those of a whole pelvis, in the "
+                      "right order?",
+                      s.file, leaf.path, s.anatomy.bones_from.file, value, leaf.key->unit, allowed(*leaf.key)));
   }
   if (!problems.empty()) throw InputError(problems);
 }
@@ -56,10 +57,11 @@ void check(const Scenario& s, const anatomy::BonyLandmarks& l) {
 
 RealPelvis read_real_pelvis(const anatomy::BoneSource& source) {
   if (!std::filesystem::exists(source.file))
-    throw InputError(fmt::format(
-        "pelvis.from: {} is not there. This scenario takes its bones from a label volume that does not come with Carus: "
-        "put one there, or name another with --set pelvis.from=FILE and its labels with pelvis.labels",
-        source.file));
+    throw InputError(
+        fmt::format("pelvis.from: {} is not there. This scenario takes its bones from a label volume that does not "
+                    "come with Carus: "
+                    "put one there, or name another with --set pelvis.from=FILE and its labels with pelvis.labels",
+                    source.file));
   const auto v = imaging::read_labels(source.file).volume;
   const auto bone = [&](int label) {
     return imaging::extract_surface(v, label, {.smoothing = smoothing, .spacing = 0.0015}, source.file).surface;

@@ -26,7 +26,8 @@ anatomy::PelvicBones upright_bones(const anatomy::Pelvis& pelvis, const Eigen::A
   const auto v = test::voxelise({174, 170, 190}, h * Mat3::Identity(), stood.translation() + low,
                                 [&](const Vec3& x) { return pelvis.label(back * x); });
   const auto bone = [&](std::int32_t label) { return imaging::extract_surface(v, label, {}, "pelvis").surface; };
-  return {bone(anatomy::innominate_right), bone(anatomy::innominate_left), bone(anatomy::sacrum), bone(anatomy::coccyx)};
+  return {bone(anatomy::innominate_right), bone(anatomy::innominate_left), bone(anatomy::sacrum),
+          bone(anatomy::coccyx)};
 }
 
 TEST(BonyLandmarks, OfAGeneratedPelvisAreWhereItWasGivenThem) {

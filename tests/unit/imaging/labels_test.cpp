@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Label volumes: every format puts the same voxel at the same place in the body, whatever its axes; files that lie are
 // refused.
-#include "carus/imaging/read_labels.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,6 +10,7 @@
 
 #include "carus/core/error.hpp"
 #include "carus/imaging/extract_surface.hpp"
+#include "carus/imaging/read_labels.hpp"
 #include "carus/imaging/smooth_labels.hpp"
 #include "support/label_files.hpp"
 
@@ -98,7 +97,8 @@ TEST(LabelVolume, DamagedFilesNeverCrashTheirReader) {
     if (format == 1) return imaging::read_nrrd(bytes, testing::TempDir(), "fuzz");
     return imaging::read_metaimage(bytes, testing::TempDir(), "fuzz");
   };
-  const std::array<std::string, 3> corpus{test::nifti_bytes(v, Form::both), test::nrrd_bytes(v), test::metaimage_bytes(v)};
+  const std::array<std::string, 3> corpus{test::nifti_bytes(v, Form::both), test::nrrd_bytes(v),
+                                          test::metaimage_bytes(v)};
   int read_well = 0, refused = 0;
   for (int format = 0; format < 3; ++format)
     for (int n = 0; n < 2000; ++n) {

@@ -35,8 +35,10 @@ Surface organ() { return test::box_surface({0.01, 0.02, 0.03}, {0.05, 0.05, 0.05
 
 std::string obj_bytes(const Surface& s, double unit) {
   std::string text = "# a test's\no organ\n";
-  for (const auto& x : s.nodes) text += fmt::format("v {} {} {} 0.5 0.5 0.5\n", x.x() / unit, x.y() / unit, x.z() / unit);
-  for (const auto& t : s.triangles) text += fmt::format("f {}//1 {}/2 {}\n", t[0] + 1, t[1] + 1, t[2] - int(s.nodes.size()));
+  for (const auto& x : s.nodes)
+    text += fmt::format("v {} {} {} 0.5 0.5 0.5\n", x.x() / unit, x.y() / unit, x.z() / unit);
+  for (const auto& t : s.triangles)
+    text += fmt::format("f {}//1 {}/2 {}\n", t[0] + 1, t[1] + 1, t[2] - int(s.nodes.size()));
   return text;
 }
 std::string ply_text(const Surface& s) {
@@ -75,8 +77,8 @@ std::string glb_bytes(const Surface& s, const std::string& node) {
     const auto w = static_cast<std::uint32_t>(v);
     return std::string(reinterpret_cast<const char*>(&w), 4);
   };
-  return "glTF" + word(2) + word(28 + json.size() + data.size()) + word(json.size()) + "JSON" + json + word(data.size()) +
-         std::string("BIN\0", 4) + data;
+  return "glTF" + word(2) + word(28 + json.size() + data.size()) + word(json.size()) + "JSON" + json +
+         word(data.size()) + std::string("BIN\0", 4) + data;
 }
 
 void expect_organ(const mesh::Closed& c, const Surface& wanted) {
@@ -95,11 +97,13 @@ TEST(SurfaceFile, EveryFormatGivesTheSameOrgan) {
   }
   expect_organ(imaging::read_surface({file_with(obj_bytes(s, 0.01), "organ.obj"), "cm", "RAS", ""}), s);
   expect_organ(imaging::read_surface({file_with(ply_text(s), "text.ply"), "mm", "RAS", ""}), s);
-  expect_organ(imaging::read_surface({file_with(glb_bytes(s, R"("scale":[1,1,1])"), "organ.glb"), "m", "RAS", "Sacrum"}), s);
+  expect_organ(
+      imaging::read_surface({file_with(glb_bytes(s, R"("scale":[1,1,1])"), "organ.glb"), "m", "RAS", "Sacrum"}), s);
   std::string text = "solid organ\n";
   for (const auto& t : s.triangles) {
     text += "facet normal 0 0 0\nouter loop\n";
-    for (const auto i : t) text += fmt::format("vertex {} {} {}\n", 1e3 * s.nodes[i].x(), 1e3 * s.nodes[i].y(), 1e3 * s.nodes[i].z());
+    for (const auto i : t)
+      text += fmt::format("vertex {} {} {}\n", 1e3 * s.nodes[i].x(), 1e3 * s.nodes[i].y(), 1e3 * s.nodes[i].z());
     text += "endloop\nendfacet\n";
   }
   expect_organ(imaging::read_surface({file_with(text + "endsolid\n", "text.stl"), "mm", "RAS", ""}), s);
@@ -108,7 +112,9 @@ TEST(SurfaceFile, EveryFormatGivesTheSameOrgan) {
 TEST(SurfaceFile, FramesAndUnitsAreTheFilesOwn) {
   // LPS: half a turn about z. LSA, as glTF: +x left, +y up, +z to the front. RSA is left-handed: outward stays outward.
   const auto file = file_with(obj_bytes(organ(), 0.001), "frames.obj");
-  const auto low = [&](const char* frame) { return mesh::box(imaging::read_surface({file, "mm", frame, ""}).surface).min(); };
+  const auto low = [&](const char* frame) {
+    return mesh::box(imaging::read_surface({file, "mm", frame, ""}).surface).min();
+  };
   EXPECT_LT((low("LPS") - Vec3(-0.05, -0.05, 0.03)).norm(), 1e-9);
   EXPECT_LT((low("LSA") - Vec3(-0.05, 0.03, 0.02)).norm(), 1e-9);
   EXPECT_LT((low("RSA") - Vec3(0.01, 0.03, 0.02)).norm(), 1e-9);
@@ -117,8 +123,10 @@ TEST(SurfaceFile, FramesAndUnitsAreTheFilesOwn) {
   EXPECT_THROW(static_cast<void>(imaging::read_surface({file, "", "RAS", ""})), InputError);
   EXPECT_THROW(static_cast<void>(imaging::read_surface({file, "mm", "", ""})), InputError);
   EXPECT_THROW(static_cast<void>(imaging::read_surface({file, "mm", "RAL", ""})), InputError);
-  const auto turned = file_with(glb_bytes(organ(), R"("translation":[1,0,0],"rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,2,2])"),
-                                "turned.glb");
+  const auto turned = file_with(
+      glb_bytes(organ(),
+                R"("translation":[1,0,0],"rotation":[0,0,0.7071067811865476,0.7071067811865476],"scale":[2,2,2])"),
+      "turned.glb");
   // Turned a quarter about z: x to y, y to -x; then moved.
   const auto box = mesh::box(imaging::read_surface({turned, "m", "RAS", ""}).surface);
   EXPECT_LT((box.min() - Vec3(1 - 0.10, 0.02, 0.06)).norm(), 1e-6);
@@ -147,7 +155,9 @@ TEST(SurfaceFile, DamagedFilesNeverCrashTheirReader) {
   // Kept: what once went wrong, here or in other readers of these formats.
   const std::vector<std::pair<std::string, std::string>> kept{
       {"kept.ply", "ply\nformat ascii 1.0\nelement vertex 999999999\nproperty float x\nend_header\n"},
-      {"kept.ply", "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int vertex_indices\nend_header\n\xff\xff\xff\xff"},
+      {"kept.ply",
+       "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list uint int "
+       "vertex_indices\nend_header\n\xff\xff\xff\xff"},
       {"kept.ply", "ply\nformat ascii 1.0\nelement vertex 5\nend_header\n"},
       {"kept.obj", "f 1 2 3\nv 0 0 0\n"},
       {"kept.obj", "v 0 0 0\nf -2147483648 9223372036854775807 -9223372036854775808\n"},
@@ -155,7 +165,8 @@ TEST(SurfaceFile, DamagedFilesNeverCrashTheirReader) {
       {"kept.stl", "solid\nfacet normal\nvertex nan nan nan\nendsolid"},
       {"kept.glb", "glTF"},
       {"kept.gltf", R"({"nodes":[{"children":[1]},{"children":[0]},{"children":[0]}]})"},
-      {"kept.gltf", R"({"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":18446744073709551615,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":12}],"buffers":[{"uri":"data:;base64,AAAA"}]})"},
+      {"kept.gltf",
+       R"({"nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5126,"count":18446744073709551615,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":12}],"buffers":[{"uri":"data:;base64,AAAA"}]})"},
       {"kept.gltf", std::string(100000, '[')},
       {"kept.vtp", "<VTKFile type=\"PolyData\"><PolyData><Piece NumberOfPoints=\"99\"/></PolyData></VTKFile>"}};
   for (const auto& [name, bytes] : kept) EXPECT_FALSE(reads(bytes, temporary(name))) << bytes.substr(0, 80);

@@ -60,14 +60,15 @@ TEST(ClosedSurface, RepairsWhatIsSafeAndTells) {
   EXPECT_EQ(c.surface.nodes.size(), 8u);
   EXPECT_EQ(c.surface.triangles.size(), 12u);
   const auto all = testing::PrintToString(c.repairs);
-  for (const char* what : {"28 nodes at the place of another", "1 triangles with two corners", "1 repeated", "turned to agree",
-                           "1 holes", "1 of 1 parts turned inside out"})
+  for (const char* what : {"28 nodes at the place of another", "1 triangles with two corners", "1 repeated",
+                           "turned to agree", "1 holes", "1 of 1 parts turned inside out"})
     EXPECT_THAT(all, HasSubstr(what));
 }
 
 TEST(ClosedSurface, APartWithinAnotherIsItsCavity) {
   auto s = box_surface(low, high);
-  const auto inner = box_surface({0.02, 0.03, 0.035}, {0.03, 0.04, 0.045}), beside = box_surface({0.1, 0, 0}, {0.11, 0.01, 0.01});
+  const auto inner = box_surface({0.02, 0.03, 0.035}, {0.03, 0.04, 0.045}),
+             beside = box_surface({0.1, 0, 0}, {0.11, 0.01, 0.01});
   for (const auto* more : {&inner, &beside}) {
     const auto n = std::int32_t(s.nodes.size());
     s.nodes.insert(s.nodes.end(), more->nodes.begin(), more->nodes.end());
@@ -84,7 +85,8 @@ TEST(ClosedSurface, RefusesWhatIsNot) {
   s.triangles.push_back({0, 3, 5});
   refuses(s, "edges have more than two triangles, the first at (");
   s = test::sphere_surface({0, 0, 0}, 0.05, 1);
-  std::erase_if(s.triangles, [&](const Triangle& t) { return (s.nodes[t[0]] + s.nodes[t[1]] + s.nodes[t[2]]).z() > 0.06; });
+  std::erase_if(s.triangles,
+                [&](const Triangle& t) { return (s.nodes[t[0]] + s.nodes[t[1]] + s.nodes[t[2]]).z() > 0.06; });
   refuses(s, "is not closed");
   s = box_surface(low, high);
   s.nodes[3].x() = std::nan("");
