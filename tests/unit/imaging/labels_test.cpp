@@ -104,7 +104,7 @@ TEST(LabelVolume, DamagedFilesNeverCrashTheirReader) {
     for (int n = 0; n < 2000; ++n) {
       auto bytes = corpus[format];
       if (n % 4 == 0) bytes.resize(random() % bytes.size());
-      for (unsigned k = random() % 6; k > 0 && !bytes.empty(); --k) {
+      for (auto k = random() % 6; k > 0 && !bytes.empty(); --k) {
         static constexpr std::array<char, 6> nasty{'\0', '\xff', '\x7f', '9', '-', '\n'};
         bytes[random() % bytes.size()] = n % 2 == 0 ? nasty[random() % nasty.size()] : char(random());
       }

@@ -177,7 +177,7 @@ TEST(SurfaceFile, DamagedFilesNeverCrashTheirReader) {
     for (int n = 0; n < 400; ++n) {
       auto bad = bytes;
       if (n % 4 == 0) bad.resize(random() % bad.size());
-      for (unsigned k = random() % 5; k > 0 && !bad.empty(); --k) {
+      for (auto k = random() % 5; k > 0 && !bad.empty(); --k) {
         static constexpr std::array<char, 6> nasty{'\0', '\xff', '\x7f', '9', '-', ' '};
         bad[random() % bad.size()] = n % 2 == 0 ? nasty[random() % nasty.size()] : char(random());
       }
