@@ -96,7 +96,7 @@ Extracted extract_surface(const LabelVolume& volume, std::int32_t label, const E
   const auto image = resampled(values, v, o.spacing);
   // Secant steps on level -> volume. Cubic interpolation, which overshoots, and fairing move it a little from the first
   // guess.
-  double level = level_of_volume(values, v.labels), before = 0, error_before = 0, error = 0;
+  double level = level_of_volume(values, v), before = 0, error_before = 0, error = 0;
   for (int it = 0; it < 8; ++it) {
     e.surface = level_set(*image, level, v);
     e.volume = mesh::volume(e.surface);

@@ -112,6 +112,7 @@ class Reader {
 
   void add(const Json& primitive, const Eigen::Affine3d& to) {
     if (primitive.value("mode", 4) != 4) return;  // points and lines are no surface
+    if (s_.nodes.size() > 50000000) refuse("has more than 50 million nodes, repeated ones counted");
     const auto first = static_cast<std::int32_t>(s_.nodes.size());
     const auto x = numbers_of(primitive.at("attributes").at("POSITION").get<std::size_t>(), "VEC3");
     for (std::size_t i = 0; i + 2 < x.size(); i += 3) s_.nodes.push_back(to * Vec3(x[i], x[i + 1], x[i + 2]));

@@ -11,8 +11,9 @@ namespace carus::imaging {
 /// index.
 std::vector<float> smoothed_indicator(const LabelVolume& v, double smoothing);
 
-/// The level that as many voxels pass as have a label: there the smoothed organ keeps its volume, where one half would
-/// take from whatever is convex or thin.
-double level_of_volume(const std::vector<float>& values, const std::vector<std::int32_t>& labels);
+/// The level at which the smoothed organ keeps its volume, where one half would take from whatever is convex or thin:
+/// of 27 points spread over each voxel, as many pass it as lie in labelled voxels. v: as in smoothed_indicator, with
+/// two empty voxels on every side.
+double level_of_volume(const std::vector<float>& values, const LabelVolume& v);
 
 }  // namespace carus::imaging

@@ -14,7 +14,7 @@ SmoothLabels::SmoothLabels(const LabelVolume& volume, const std::vector<std::int
   for (const auto l : labels) {
     const auto v = crop(volume, l, static_cast<int>(std::ceil(3 * smoothing)) + 2, name);
     Field f{l, v.size, v.axes.inverse(), v.origin, smoothed_indicator(v, smoothing), 0, {v.origin, v.origin}};
-    f.level = level_of_volume(f.values, v.labels);
+    f.level = level_of_volume(f.values, v);
     for (int corner = 0; corner < 8; ++corner) {
       const Vec3 x = v.position({(corner & 1) != 0 ? v.size[0] - 1.0 : 0.0, (corner & 2) != 0 ? v.size[1] - 1.0 : 0.0,
                                  (corner & 4) != 0 ? v.size[2] - 1.0 : 0.0});

@@ -229,7 +229,7 @@ class Closer {
     }
     for (std::size_t t = 0; t < s_.triangles.size(); ++t)
       if (turn[p.of[t]]) std::swap(s_.triangles[t][1], s_.triangles[t][2]);
-    if (turned > 0) tell(fmt::format("{} of {} parts turned inside out", turned, p.count));
+    if (turned > 0) tell(fmt::format("{} of {} parts were inside out: turned", turned, p.count));
     if (cavities > 0) tell(fmt::format("{} of {} parts lie within another: they are its cavities", cavities, p.count));
     if (p.count - cavities > 1) tell(fmt::format("{} separate parts, all kept", p.count - cavities));
   }

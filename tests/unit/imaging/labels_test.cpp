@@ -126,8 +126,8 @@ TEST(ExtractedSurface, KeepsTheVolumeAndPlaceOfAnEllipsoid) {
   const double exact = 4.0 / 3.0 * pi * semi.prod();
   for (const auto& axes : {Mat3(0.001 * Mat3::Identity()), oblique(false), oblique(true)}) {
     const Mat3 cell = axes;
-    const std::array<int, 3> size{70, 40, 40};
-    const auto v = test::voxelise(size, cell, centre - cell * Vec3(35, 20, 20), inside);
+    const std::array<int, 3> size{60, 60, 60};
+    const auto v = test::voxelise(size, cell, centre - cell * Vec3(30, 30, 30), inside);
     const auto e = imaging::extract_surface(v, 3, {}, "ellipsoid");
     EXPECT_NEAR(e.volume / e.labelled_volume, 1, 0.002);
     EXPECT_NEAR(e.volume / exact, 1, 0.01);  // 10^4 voxels know a volume to less than that

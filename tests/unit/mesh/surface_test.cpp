@@ -61,7 +61,7 @@ TEST(ClosedSurface, RepairsWhatIsSafeAndTells) {
   EXPECT_EQ(c.surface.triangles.size(), 12u);
   const auto all = testing::PrintToString(c.repairs);
   for (const char* what : {"28 nodes at the place of another", "1 triangles with two corners", "1 repeated",
-                           "turned to agree", "1 holes", "1 of 1 parts turned inside out"})
+                           "turned to agree", "1 holes", "1 of 1 parts were inside out"})
     EXPECT_THAT(all, HasSubstr(what));
 }
 
