@@ -82,7 +82,7 @@ struct PrecisionArguments {
   std::string out, d_organ;
   std::vector<double> reductions{10, 20, 30, 40, 50, 60, 70, 80, 85, 90, 95, 98};
   double map_at = 90;
-  std::size_t samples = 400000;
+  std::size_t samples = 100000;
 };
 
 #ifdef CARUS_WITH_MESHING

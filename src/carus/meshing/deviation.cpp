@@ -43,7 +43,7 @@ Directed summary(std::vector<double> d) {
 /// Mean, RMS and percentile by area from the samples; the largest also over the nodes, where corners are.
 Directed directed(const Distances& to, const mesh::Surface& from, std::size_t samples) {
   auto result = summary(to.to(sample(from, samples)));
-  if (from.nodes.size() <= samples)
+  if (from.nodes.size() <= 4 * samples)
     for (const double d : to.to(from.nodes)) result.largest = std::max(result.largest, d);
   return result;
 }

@@ -22,7 +22,7 @@ struct Precision {
 
 /// Simplifies once, to the highest of the reductions, and measures the states on the way. 1.75 million nodes and ten
 /// reductions: docs/theory/geometry.md has the time.
-Precision precision(const Distances& original, std::vector<double> reductions, std::size_t samples = 400000);
+Precision precision(const Distances& original, std::vector<double> reductions, std::size_t samples = 100000);
 
 /// A length that stands for an organ in alpha, measured on it.
 struct Thickness {
