@@ -16,6 +16,7 @@ enum Status : int { done = 0, not_met = 1, bad_input = 2, numerical_failure = 3,
 void add_run(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 void add_anatomy(CLI::App& app, int& status);
+void add_mesh(CLI::App& app, int& status);
 void add_study(CLI::App& app, int& status);
 void add_bench(CLI::App& app, int& status);
 void add_report(CLI::App& app, int& status);

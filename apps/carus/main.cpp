@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
   app::add_run(app, status);
   app::add_check(app, status);
   app::add_anatomy(app, status);
+  app::add_mesh(app, status);
   app::add_study(app, status);
   app::add_bench(app, status);
   app::add_report(app, status);

@@ -41,4 +41,19 @@ std::int32_t Abdomen::label(const Vec3& x) const {
   return tissue(x, from_uterus);
 }
 
+Overlap overlap(const Uterus& uterus, const Pelvis& pelvis) {
+  constexpr double h = 0.002;  // [m]
+  Overlap o;
+  for (double z = -0.16; z < 0.12; z += h)
+    for (double y = -0.11; y < 0.13; y += h)
+      for (double x = -0.10; x < 0.10; x += h) {
+        const Vec3 p(x, y, z);
+        const double inside = -uterus.outer_distance(p);
+        if (inside <= 0 || uterus.axis().nearest(p) > uterus.axis().vulva() || pelvis.label(p) == outside) continue;
+        o.volume += h * h * h;
+        if (inside > o.depth) o.depth = inside, o.where = p;
+      }
+  return o;
+}
+
 }  // namespace carus::anatomy

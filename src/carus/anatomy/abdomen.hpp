@@ -27,4 +27,12 @@ class Abdomen {
   const Pelvis& pelvis_;
 };
 
+/// Where the uterus with its canal, as it lies at rest, is deepest within bone; there the bone gives way in the mesh.
+struct Overlap {
+  double depth = 0;  ///< of the wall's outer face behind the bone's surface [m], 0 if they are apart; to about 0.5 mm
+  Vec3 where = Vec3::Zero();
+  double volume = 0;  ///< of the bone that gives way [m^3]
+};
+Overlap overlap(const Uterus& uterus, const Pelvis& pelvis);
+
 }  // namespace carus::anatomy

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -66,6 +68,17 @@ struct FetusParameters {
   Position position = Position::LOT;
   double asynclitism = 0.0;  ///< rad
 };
+/// Bones that are not generated but given: a real pelvis, in its own frame.
+struct GivenBones {
+  std::function<std::int32_t(const Vec3&)> label;  ///< innominate_right ... coccyx, or outside; thread-safe
+  std::map<std::string, Vec3> landmarks;           ///< by the names of Pelvis::landmarks(), without the vulva's
+};
+/// Where given bones are read from; all else about them follows from it.
+struct BoneSource {
+  std::string file;  ///< a label volume; empty: bones are generated
+  int right = 2, left = 1, sacrum = 3, coccyx = 4;
+  bool fit_canal = true;  ///< bend_radius and bend_start follow from where the symphysis is
+};
 struct MeshSize {
   double fetus, uterus, abdomen_inner, abdomen_outer, bone;  ///< facet edge [m]
 };
@@ -76,6 +89,8 @@ struct Parameters {
   AbdomenParameters abdomen;
   FetusParameters fetus;
   MeshSize mesh{};
+  BoneSource bones_from;
+  std::shared_ptr<const GivenBones> bones;  ///< in the place of generated ones; `pelvis` then holds their measures
 };
 
 /// Axis of the birth canal, from the fundus down: straight along -z, then an arc forward round the symphysis, then

@@ -39,7 +39,13 @@ Vec2 meet(const Vec2& A, double a, const Vec2& B, double b) {
 
 }  // namespace
 
-Pelvis::Pelvis(const PelvisParameters& p, const CanalParameters& canal) : p_(p), axis_(canal) {
+Pelvis::Pelvis(const PelvisParameters& p, const CanalParameters& canal, std::shared_ptr<const GivenBones> bones)
+    : p_(p), axis_(canal), bones_(std::move(bones)) {
+  if (!bones_) generate();
+}
+
+void Pelvis::generate() {
+  const auto& p = p_;
   const double half = p.obstetric_conjugate / 2;
   const Vec2 P(-half, 0);
   symphysis_bottom_ = {half - symphysis_lean, -p.symphysis_height};
@@ -163,6 +169,7 @@ double Pelvis::sacral(const Vec3& x, double& along) const {
 }
 
 std::int32_t Pelvis::label(const Vec3& x) const {
+  if (bones_) return bones_->label(x);
   double along = 0;
   if (x.y() < -0.01 && sacral(x, along) < 0) return along > hinge_ ? coccyx : sacrum;
   if (innominate(x) >= 0) return outside;
@@ -170,6 +177,11 @@ std::int32_t Pelvis::label(const Vec3& x) const {
 }
 
 std::map<std::string, Vec3> Pelvis::landmarks() const {
+  if (bones_) {
+    auto given = bones_->landmarks;
+    given["vulva_centre"] = axis_.centre(axis_.vulva()), given["vulva_normal"] = axis_.tangent(axis_.vulva());
+    return given;
+  }
   const auto mid = [](const Vec2& q) { return Vec3(0, q.x(), q.y()); };
   const auto mirrored = [](const Vec3& x) { return Vec3(-x.x(), x.y(), x.z()); };
   Vec2 hinge = curve_.front();

@@ -12,7 +12,8 @@ namespace carus::anatomy {
 ///
 /// The inner face of the innominate bones is an oval tube round the canal's axis; on it, unrolled into (u, v) = (round,
 /// up), the bone is drawn as plane shapes (ilium, pubis, ischium: what lies between is the sciatic notch and the
-/// obturator foramen) and given thickness.
+/// obturator foramen) and given thickness. Given bones take the place of all that; the tube remains, as wide as they
+/// measure, for the soft parts to follow.
 ///
 ///     promontory P ●────── inlet, z = 0 ──────● symphysis top
 ///                  ╲ hollow                   │ symphysis, 42 mm
@@ -22,8 +23,9 @@ namespace carus::anatomy {
 ///                  ╲__● T tip of the coccyx:  |ST| sagittal outlet, |PQ| sacral height, angle PQT sacrococcygeal
 class Pelvis {
  public:
-  /// Throws InputError if the sagittal lengths cannot meet in a triangle.
-  Pelvis(const PelvisParameters& p, const CanalParameters& canal);
+  /// bones: given ones, or null to generate them. Throws InputError if the sagittal lengths of generated ones cannot
+  /// meet in a triangle.
+  Pelvis(const PelvisParameters& p, const CanalParameters& canal, std::shared_ptr<const GivenBones> bones = nullptr);
   [[nodiscard]] std::int32_t label(const Vec3& x) const;
   [[nodiscard]] double channel(const Vec3& x) const;  ///< to the bony canal's inner face: negative within [m]
   /// Round (from the side to the front, scaled to length) and up: the unrolled inner face.
@@ -37,8 +39,11 @@ class Pelvis {
   [[nodiscard]] double innominate(const Vec3& x) const;  ///< right and left alike: mirrored in x = 0
   [[nodiscard]] double sacral(const Vec3& x, double& along) const;
 
+  void generate();
+
   PelvisParameters p_;
   CanalAxis axis_;
+  std::shared_ptr<const GivenBones> bones_;
   Eigen::Vector2d symphysis_bottom_, sacral_tip_, coccyx_tip_;  ///< (y, z)
   std::vector<Eigen::Vector2d> curve_;            ///< anterior face of sacrum and coccyx at x = 0, from above
   std::vector<double> along_;                     ///< arc length from the promontory

@@ -8,6 +8,7 @@
 
 #include "carus/anatomy/abdomen.hpp"
 #include "carus/anatomy/measure.hpp"
+#include "carus/core/error.hpp"
 #include "carus/meshing/keep_clear.hpp"
 #include "carus/meshing/labelled_solid.hpp"
 #include "carus/meshing/layer.hpp"
@@ -26,6 +27,7 @@ constexpr double bag_radius = 0.05;
 constexpr double altitude_of_edge = 0.25;   // what altitudes are raised to, of the edge
 constexpr double coccyx_size = 0.0060;      // [m]
 constexpr double least_clearance = 0.0007;  // between bodies, whatever the facets [m]
+constexpr double most_overlap = 0.006;      // of walls at rest and given bones [m]
 double sagitta(double h) { return h * h / (6 * bag_radius); }
 
 mesh::TetMesh mesh_fetus(const Parameters& p, const Fetus& fetus, const Uterus& uterus) {
@@ -83,6 +85,23 @@ mesh::TetMesh mesh_abdomen(const Parameters& p, const Abdomen& solid, const Uter
   return m;
 }
 
+/// Given bones are where they are: the walls at rest may lie against them, not in them.
+void require_room(Anatomy& a, const Uterus& uterus, const Pelvis& pelvis) {
+  const auto o = overlap(uterus, pelvis);
+  a.measured["overlap_of_wall_and_bone"] = o.depth;
+  const auto told = fmt::format(
+      "the canal at rest lies {:.1f} mm deep in {} at ({:.0f}, {:.0f}, {:.0f}) mm, {:.1f} ml of bone in all",
+      o.depth * 1e3, name_of(pelvis.label(o.where)), o.where.x() * 1e3, o.where.y() * 1e3, o.where.z() * 1e3,
+      o.volume * 1e6);
+  if (o.depth > most_overlap)
+    throw InputError(
+        fmt::format("pelvis.from: {}; at most {:.0f} mm can give way; lower canal.radius or uterus.wall_canal, or set "
+                    "pelvis.fit_canal "
+                    "to false and lay canal.bend_start and bend_radius yourself",
+                    told, most_overlap * 1e3));
+  if (o.depth > 0) a.warnings.push_back(told + "; it gives way in the mesh");
+}
+
 }  // namespace
 
 Anatomy build(const Parameters& given) {
@@ -95,8 +114,9 @@ Anatomy build(const Parameters& given) {
   p.abdomen.gap += sagitta(p.mesh.abdomen_inner);
   const Fetus fetus(p.fetus);
   const Uterus uterus(p, fetus);
-  const Pelvis pelvis(p.pelvis, p.canal);
+  const Pelvis pelvis(p.pelvis, p.canal, p.bones);
   const Abdomen abdomen(p, uterus, pelvis);
+  if (given.bones) require_room(a, uterus, pelvis);
 
   a.fetus = {"fetus", mesh_fetus(p, fetus, uterus), {}, {}};
   a.uterus = {

@@ -12,29 +12,6 @@ namespace carus::results {
 
 namespace fs = std::filesystem;
 
-void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
-  fs::path temporary = path;
-  temporary += ".tmp";
-  try {
-    write(temporary);
-    fs::rename(temporary, path);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);  // half of a file is no use to anyone
-    throw;
-  }
-}
-
-void write_atomically(const fs::path& path, std::string_view text) {
-  write_atomically(path, [&](const fs::path& temporary) {
-    std::ofstream out(temporary, std::ios::binary);
-    out << text;
-    out.close();
-    if (!out)
-      throw InputError(fmt::format("{}: cannot be written; is the disk full, or the folder read-only?", path.string()));
-  });
-}
-
 std::string read_text(const fs::path& path) {
   std::ifstream in(path, std::ios::binary);
   std::ostringstream text;

@@ -3,17 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <string_view>
 
+#include "carus/core/atomic_file.hpp"
+
 namespace carus::results {
 
-/// Calls `write` with a temporary name beside `path`, then renames it over `path`: whoever reads, at any moment and
-/// after any kill, finds the old file or the new one, whole.
-void write_atomically(const std::filesystem::path& path,
-                      const std::function<void(const std::filesystem::path&)>& write);
-void write_atomically(const std::filesystem::path& path, std::string_view text);
+using carus::write_atomically;
 
 /// Whole text of a file; throws InputError if it cannot be read.
 std::string read_text(const std::filesystem::path& path);

@@ -14,6 +14,11 @@ namespace carus::scenario {
 /// enumerations and list(path, vector, item(path, element)) for arrays.
 template <class Visitor>
 void bind_anatomy(Visitor& v, anatomy::Parameters& a) {
+  auto& bones = a.bones_from;
+  v("pelvis.from", bones.file);
+  v("pelvis.labels.innominate_right", bones.right), v("pelvis.labels.innominate_left", bones.left);
+  v("pelvis.labels.sacrum", bones.sacrum), v("pelvis.labels.coccyx", bones.coccyx);
+  v("pelvis.fit_canal", bones.fit_canal);
   auto& p = a.pelvis;
   v("pelvis.obstetric_conjugate", p.obstetric_conjugate), v("pelvis.transverse_inlet", p.transverse_inlet);
   v("pelvis.interspinous", p.interspinous), v("pelvis.intertuberous", p.intertuberous);

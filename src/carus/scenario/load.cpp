@@ -8,6 +8,7 @@
 #include "carus/scenario/bind.hpp"
 #include "carus/scenario/consistency.hpp"
 #include "carus/scenario/raw.hpp"
+#include "carus/scenario/real_pelvis.hpp"
 #include "carus/scenario/settings.hpp"
 
 namespace carus::scenario {
@@ -66,11 +67,16 @@ Scenario build(Raw root, const std::filesystem::path& file, const std::vector<st
   bind(reader, s);
   if (s.name.empty()) s.name = file.stem().string();
   s.warnings = std::move(warnings);
-  if (!s.anatomy_from.empty()) {  // beside the file that names it; on the command line, from where one stands
-    const std::string& by = settings.files.at("anatomy.from");
+  // Beside the file that names it; on the command line, from where one stands.
+  const auto locate = [&](const char* key, std::string& path) {
+    if (path.empty()) return;
+    const std::string& by = settings.files.at(key);
     const auto folder = by == "--set" ? std::filesystem::path() : std::filesystem::path(by).parent_path();
-    s.anatomy_from = std::filesystem::absolute(folder / s.anatomy_from).lexically_normal().string();
-  }
+    path = std::filesystem::absolute(folder / path).lexically_normal().string();
+  };
+  locate("anatomy.from", s.anatomy_from);
+  locate("pelvis.from", s.anatomy.bones_from.file);
+  take_real_pelvis(s);
   problems = inconsistencies(s, settings);
   if (!problems.empty()) throw InputError(problems);
 

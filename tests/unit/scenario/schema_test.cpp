@@ -140,6 +140,7 @@ TEST(Schema, EveryKeyIsBoundToItsOwnMember) {
   for (const Leaf& leaf : leaves(schema())) {
     const Key& key = *leaf.key;
     if (leaf.path == "extends" || leaf.path == "solver.kind" || leaf.path.find("[]") != std::string::npos) continue;
+    if (leaf.path == "pelvis.from") continue;  // names a file that is read: refused below
     std::string value;
     switch (key.type) {
       case Type::text:
@@ -175,6 +176,7 @@ TEST(Schema, EveryKeyIsBoundToItsOwnMember) {
       }
     EXPECT_EQ(changed, 1u) << leaf.path << " = " << value;
   }
+  EXPECT_THROW(parse("", "s.yaml", {"pelvis.from=other"}), InputError);
   const Scenario s = parse("", "s.yaml", {"materials.skull.law=mooney_rivlin", "materials.skull.c01=2 kPa"});
   EXPECT_EQ(s.materials.at("skull").law, material::Law::mooney_rivlin);
   EXPECT_DOUBLE_EQ(s.materials.at("skull").c01, 2000);

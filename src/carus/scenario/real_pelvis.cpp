@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "carus/scenario/real_pelvis.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include "carus/core/error.hpp"
+#include "carus/core/units.hpp"
+#include "carus/imaging/extract_surface.hpp"
+#include "carus/imaging/read_labels.hpp"
+#include "carus/imaging/smooth_labels.hpp"
+#include "carus/scenario/schema.hpp"
+
+namespace carus::scenario {
+namespace {
+
+constexpr double smoothing = 0.8;  // [voxels]
+
+/// The solid of the bones, in the pelvis' own frame.
+std::shared_ptr<const anatomy::GivenBones> solid(const imaging::LabelVolume& v, const anatomy::BoneSource& source,
+                                                 const anatomy::BonyLandmarks& l) {
+  const auto labels = std::make_shared<imaging::SmoothLabels>(
+      v, std::vector<std::int32_t>{source.right, source.left, source.sacrum, source.coccyx}, smoothing, source.file);
+  const Vec3 hinge = l.points.at("coccyx_hinge"),
+             down = (l.points.at("sacrum_tip") - l.points.at("promontory")).normalized();
+  auto bones = std::make_shared<anatomy::GivenBones>();
+  bones->landmarks = l.points;
+  bones->label = [labels, source, hinge, down, frame = l.frame](const Vec3& p) -> std::int32_t {
+    const auto found = labels->label(frame.to_ras(p));
+    if (found == 0) return anatomy::outside;
+    if (found == source.right) return anatomy::innominate_right;
+    if (found == source.left) return anatomy::innominate_left;
+    return found == source.coccyx || (p - hinge).dot(down) > 0 ? anatomy::coccyx : anatomy::sacrum;
+  };
+  return bones;
+}
+
+/// Every measure within what the schema allows a pelvis at all.
+void check(const Scenario& s, const anatomy::BonyLandmarks& l) {
+  std::vector<std::string> problems;
+  for (const auto& leaf : leaves(schema())) {
+    if (!leaf.path.starts_with("pelvis.") || leaf.key->type != Type::quantity) continue;
+    const auto it = l.measures.find(leaf.key->name);
+    if (it == l.measures.end()) continue;
+    const double unit = leaf.key->unit == "deg" ? units::deg : units::mm, value = it->second / unit;
+    if (!(value >= leaf.key->minimum && value <= leaf.key->maximum))
+      problems.push_back(
+          fmt::format("{}: {}: {} measures {:.1f} {} there; allowed {}; are the labels those of a whole pelvis, in the "
+                      "right order?",
+                      s.file, leaf.path, s.anatomy.bones_from.file, value, leaf.key->unit, allowed(*leaf.key)));
+  }
+  if (!problems.empty()) throw InputError(problems);
+}
+
+}  // namespace
+
+RealPelvis read_real_pelvis(const anatomy::BoneSource& source) {
+  if (!std::filesystem::exists(source.file))
+    throw InputError(
+        fmt::format("pelvis.from: {} is not there. This scenario takes its bones from a label volume that does not "
+                    "come with Carus: "
+                    "put one there, or name another with --set pelvis.from=FILE and its labels with pelvis.labels",
+                    source.file));
+  const auto v = imaging::read_labels(source.file).volume;
+  const auto bone = [&](int label) {
+    return imaging::extract_surface(v, label, {.smoothing = smoothing, .spacing = 0.0015}, source.file).surface;
+  };
+  RealPelvis r;
+  r.landmarks =
+      anatomy::find_landmarks({bone(source.right), bone(source.left), bone(source.sacrum), bone(source.coccyx)});
+  r.bones = solid(v, source, r.landmarks);
+  return r;
+}
+
+void take_real_pelvis(Scenario& s) {
+  auto& a = s.anatomy;
+  if (a.bones_from.file.empty()) return;
+  auto real = read_real_pelvis(a.bones_from);
+  check(s, real.landmarks);
+  a.pelvis = anatomy::fitted(a.pelvis, real.landmarks);
+  if (a.bones_from.fit_canal) a.canal = anatomy::fitted(a.canal, real.landmarks);
+  a.bones = std::move(real.bones);
+}
+
+}  // namespace carus::scenario
