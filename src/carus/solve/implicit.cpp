@@ -79,6 +79,7 @@ struct Implicit::Impl {
   double growth = 1.5;  // of it, after an accepted step
   std::vector<double> pressures;
   ImplicitCounts counts;
+  NewtonIteration last{};
   double seconds[stage_count] = {};
 
   // Of the step under way.
@@ -294,6 +295,7 @@ struct Implicit::Impl {
     const auto result = pcg([&](const Unknowns& q, Unknowns& y) { multiply(q, y); }, precondition, residual, direction,
                             options.linear_tolerance, options.max_linear_iterations, pcg_work);
     counts.linear += result.iterations;
+    last.linear = result.iterations;
   }
 
   void move(double a, const std::vector<Vec3>* given, std::vector<Vec3>& to, std::vector<double>& turned) const {
@@ -309,10 +311,10 @@ struct Implicit::Impl {
   Refusal search_line(const std::vector<Vec3>* given, double& a) {
     const Stopwatch watch(seconds[line_search]);
     const double before = potential(x, angle);
-    const double slope = -dot(residual, direction);
+    const double slope = last.slope = -dot(residual, direction);
     std::vector<Vec3> next;
     std::vector<double> turned;
-    a = clear_way(given);
+    a = last.clear = clear_way(given);
     for (const double least = 1e-9 * a; a > least; a *= 0.5) {
       ++counts.line_search;
       move(a, given, next, turned);
@@ -320,8 +322,7 @@ struct Implicit::Impl {
       if (!std::isfinite(after)) continue;
       std::vector<Vec3> new_load = loads_at(next, t1);
       if (!given) {
-        double done = 0;
-        for (std::size_t i = 0; i < x.size(); ++i) done += 0.5 * (load[i] + new_load[i]).dot(next[i] - x[i]);
+        const double done = work_between(next, new_load);
         // Near the minimum the fall drowns in the rounding of the sums.
         if (after - before - done > 1e-4 * a * slope + 1e-13 * (std::abs(before) + std::abs(done))) continue;
       }
@@ -343,8 +344,40 @@ struct Implicit::Impl {
     return contact.conservative_step(x, way);
   }
 
+  /// Goes on as in the step before, as far as that is free of collisions and lowers the potential: bodies that creep
+  /// together then start nearly where they will end.
+  void extrapolate() {
+    if (state.step == 0 || !model.motions.empty()) return;
+    u = state.v;
+    for (Vec3& v : u) v *= dt;
+    direction.assign(freedom.unknowns(), Vec3::Zero());
+    for (std::size_t h = 0; h < model.hinges.size(); ++h) direction[freedom.nodes() + h].x() = dt * state.hinge_rate[h];
+    double a = clear_way(nullptr);
+    const Stopwatch watch(seconds[line_search]);
+    const double before = potential(x, angle);
+    std::vector<Vec3> next;
+    std::vector<double> turned;
+    for (const double least = 0.1 * a; a > least; a *= 0.5) {
+      move(a, nullptr, next, turned);
+      const double after = potential(next, turned);
+      if (!std::isfinite(after)) continue;
+      std::vector<Vec3> new_load = loads_at(next, t1);
+      if (after - before > work_between(next, new_load)) continue;
+      x.swap(next), angle.swap(turned), load.swap(new_load);
+      return;
+    }
+  }
+
+  /// Of the loads on the way from x, in the middle of their change [J].
+  double work_between(const std::vector<Vec3>& next, const std::vector<Vec3>& new_load) const {
+    double done = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) done += 0.5 * (load[i] + new_load[i]).dot(next[i] - x[i]);
+    return done;
+  }
+
   Refusal minimise() {
     std::vector<Vec3> given(x.size(), Vec3::Zero());
+    extrapolate();
     for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
       ++counts.newton;
       gradient();
@@ -362,7 +395,10 @@ struct Implicit::Impl {
       const double length = largest(u);
       if (!std::isfinite(length)) return "a correction that is not finite";
       double a = 1;
-      if (const auto refusal = search_line(imposed ? &given : nullptr, a); !refusal.empty()) return refusal;
+      const auto refusal = search_line(imposed ? &given : nullptr, a);
+      last.time = t1, last.dt = dt, last.iteration = iteration, last.length = length, last.taken = a;
+      if (options.watch) options.watch(last);
+      if (!refusal.empty()) return refusal;
       if (!imposed && a * length <= options.newton_tolerance) return {};
     }
     return fmt::format("no convergence in {} Newton iterations", options.max_iterations);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <utility>
@@ -10,6 +11,16 @@
 #include "carus/solve/explicit.hpp"
 
 namespace carus::solve {
+
+/// One Newton iteration, for those who watch the convergence.
+struct NewtonIteration {
+  double time, dt;  ///< [s of labour]
+  int iteration;
+  double length;        ///< [m] that the correction would move a node at most
+  double clear, taken;  ///< share of it that is free of collisions, and that was taken
+  double slope;         ///< [J] of the potential along it
+  int linear;           ///< iterations of the conjugate gradients
+};
 
 /// Numerics of the implicit solver. All are declared in the scenario and reported with the result.
 struct ImplicitOptions {
@@ -26,6 +37,7 @@ struct ImplicitOptions {
   double barrier_pressure = 5e4;   ///< [Pa] scale of the repulsion: what they feel at about half of that distance
   double friction_speed = 1e-4;    ///< [m/s of labour] slip above which friction is full
   int threads = 0;                 ///< 0: all
+  std::function<void(const NewtonIteration&)> watch;  ///< may be empty
 };
 
 /// What the solver has had to do since its construction.
