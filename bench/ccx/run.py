@@ -4,8 +4,10 @@
 
     bench/ccx/run.py [SCENARIO] [--carus FILE] [--threads N ...] [--repeats N]
 
-Prints reaction, difference, seconds (wall and processor, least of the repetitions) and their ratio, the verdict last.
-Exit status 0: within 1 %; 1: not; 77: skipped, because ccx is not there (apt install calculix-ccx).
+Prints reaction, difference, seconds (wall and processor, least of the repetitions) and their ratio, the verdict last. First
+by 0.1 %, where both must agree within 0.1 %; then as the scenario says, where the volumetric laws part: ccx has
+K/2 (J - 1)^2, Carus K/4 (J^2 - 1 - 2 ln J), stiffer under compression by about half of 1 - J. Hence 2 %.
+Exit status 0: within that; 1: not; 77: skipped, because ccx is not there (apt install calculix-ccx).
 """
 import argparse
 import csv
@@ -21,6 +23,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+SMALL = ["--set", "motions=[{nodes: top, displacement: [0 mm, 0 mm, -0.11 mm]}]", "--set", "numerics.newton_tolerance=1e-7 mm"]
 
 
 def timed(command, folder, threads):
@@ -59,26 +62,34 @@ def main():
         print("SKIPPED: ccx is not there; apt install calculix-ccx")
         return 77
     met = True
+    print(f"{'case':>8} {'threads':>7} {'ccx [N]':>12} {'carus [N]':>12} {'difference':>10} "
+          f"{'ccx wall/cpu [s]':>18} {'carus wall/cpu [s]':>18} {'faster (wall)':>13}")
+    for case, allowed, threads, more in [("small", 1e-3, a.threads[:1], SMALL), ("as told", 0.02, a.threads, [])]:
+        for n in threads:
+            error = pair(a, case, n, more)
+            met = met and error < allowed
+    print("MET: reactions within 0.1 % where strains are small, within 2 % where they are large" if met else
+          "NOT MET: reactions differ by more than 0.1 % where strains are small, or 2 % where they are large")
+    return 0 if met else 1
+
+
+def pair(a, case, threads, more):
+    """Both programs on one case: prints a row, returns the relative difference of the reactions."""
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        deck = folder / "model.inp"
-        timed([a.carus, "export", "ccx", a.scenario.resolve(), "--out", deck], folder, 1)
-        print(f"{'threads':>7} {'ccx [N]':>12} {'carus [N]':>12} {'difference':>10} "
-              f"{'ccx wall/cpu [s]':>18} {'carus wall/cpu [s]':>18} {'faster (wall)':>13}")
-        for threads in a.threads:
-            theirs, ours = [], []
-            for _ in range(a.repeats):
-                theirs.append(timed(["ccx", "model"], folder, threads))
-                ours.append(timed([str(a.carus), "run", str(a.scenario.resolve()), "--out", str(folder / "out"), "--threads",
-                                   str(threads)], folder, threads))
-            f, g = ccx_reaction(folder / "model.dat"), carus_reaction(folder / "out")
-            error = abs(g / f - 1)
-            met = met and error < 0.01
-            t, o = min(theirs), min(ours)
-            print(f"{threads:7d} {f:12.4f} {g:12.4f} {100 * error:8.3f} % {t[0]:9.2f} /{t[1]:7.2f} {o[0]:9.2f} /{o[1]:7.2f} "
-                  f"{t[0] / o[0]:11.2f} x")
-    print("MET: reactions within 1 %" if met else "NOT MET: reactions differ by more than 1 %")
-    return 0 if met else 1
+        carus, scenario = str(a.carus.resolve()), str(a.scenario.resolve())
+        timed([carus, "export", "ccx", scenario, "--out", str(folder / "model.inp"), *more], folder, 1)
+        theirs, ours = [], []
+        for _ in range(a.repeats):
+            theirs.append(timed(["ccx", "model"], folder, threads))
+            ours.append(timed([carus, "run", scenario, "--out", str(folder / "out"), "--threads", str(threads), *more], folder,
+                              threads))
+        f, g = ccx_reaction(folder / "model.dat"), carus_reaction(folder / "out")
+        t, o = min(theirs), min(ours)
+        error = abs(g / f - 1)
+        print(f"{case:>8} {threads:7d} {f:12.5g} {g:12.5g} {100 * error:8.3f} % {t[0]:9.2f} /{t[1]:7.2f} {o[0]:9.2f} /{o[1]:7.2f} "
+              f"{t[0] / o[0]:11.2f} x", flush=True)
+        return error
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@
 #include "carus/core/error.hpp"
 #include "carus/scenario/schema.hpp"
 #include "carus/scenario/text.hpp"
+#include "carus/scenario/unguided.hpp"
 
 namespace carus::general {
 namespace {
@@ -38,6 +39,7 @@ class Builder {
       take_contact();
       take_ties();
       watch();
+      for (const auto& problem : scenario::guided_fetus(out_.model)) refuse("motions", problem);
     }
     if (!problems_.empty()) throw InputError(problems_);
     return std::move(out_);

@@ -25,6 +25,9 @@ std::string label(const std::string& name, char kind, std::size_t index) {
   return out;
 }
 
+/// ccx cuts a field off after 20 characters, exponent and all.
+std::string number(double v) { return fmt::format("{:.13g}", v); }
+
 class Deck {
  public:
   Deck(const scenario::ModelScenario& s, const GeneralModel& m) : s_(s), m_(m.model), watched_(m.watched) {}
@@ -71,7 +74,7 @@ class Deck {
     line("*NODE, NSET=NALL");
     for (std::size_t i = 0; i < m_.mesh.nodes.size(); ++i) {
       const Vec3& x = m_.mesh.nodes[i];
-      line("{}, {}, {}, {}", i + 1, x.x(), x.y(), x.z());
+      line("{}, {}, {}, {}", i + 1, number(x.x()), number(x.y()), number(x.z()));
     }
     for (std::size_t r = 0; r < m_.regions.size(); ++r) {
       line("*ELEMENT, TYPE=C3D4, ELSET={}", label(m_.regions[r].name, 'E', r));
@@ -95,13 +98,13 @@ class Deck {
       const auto& m = m_.regions[r].material;
       line("*MATERIAL, NAME={}", label(m_.regions[r].name, 'M', r));
       if (m.law == Law::neo_hooke) {
-        line("*HYPERELASTIC, NEO HOOKE\n{}, {}", m.c10, 2 / m.bulk_modulus());
+        line("*HYPERELASTIC, NEO HOOKE\n{}, {}", number(m.c10), number(2 / m.bulk_modulus()));
       } else if (m.law == Law::mooney_rivlin) {
-        line("*HYPERELASTIC, MOONEY-RIVLIN\n{}, {}, {}", m.c10, m.c01, 2 / m.bulk_modulus());
+        line("*HYPERELASTIC, MOONEY-RIVLIN\n{}, {}, {}", number(m.c10), number(m.c01), number(2 / m.bulk_modulus()));
       } else {
-        line("*ELASTIC\n{}, {}", m.youngs_modulus, m.poisson);
+        line("*ELASTIC\n{}, {}", number(m.youngs_modulus), number(m.poisson));
       }
-      line("*DENSITY\n{}", m.density);
+      line("*DENSITY\n{}", number(m.density));
       line("*SOLID SECTION, ELSET={}, MATERIAL={}", label(m_.regions[r].name, 'E', r),
            label(m_.regions[r].name, 'M', r));
     }
@@ -121,7 +124,7 @@ class Deck {
       const Vec3 u = motion.displacement ? motion.displacement(end) : Vec3::Zero();
       for (const auto n : motion.nodes) {
         for (int k = 0; k < 3; ++k) {
-          if ((motion.axes >> k) & 1) line("{}, {}, {}, {}", n + 1, k + 1, k + 1, u[k]);
+          if ((motion.axes >> k) & 1) line("{}, {}, {}, {}", n + 1, k + 1, k + 1, number(u[k]));
         }
       }
     }
@@ -153,7 +156,7 @@ class Deck {
     for (const auto& p : m_.pressures) {
       for (const auto& t : p.surface) {
         const auto it = face_of.find(sorted(t));
-        if (it != face_of.end()) line("{}, P{}, {}", it->second.first, it->second.second, p.pressure(end));
+        if (it != face_of.end()) line("{}, P{}, {}", it->second.first, it->second.second, number(p.pressure(end)));
       }
     }
   }
@@ -166,7 +169,8 @@ class Deck {
       for (std::size_t r = 0; r < m_.regions.size(); ++r) {
         if (!b.regions.empty() && std::find(b.regions.begin(), b.regions.end(), std::int32_t(r)) == b.regions.end())
           continue;
-        line("*DLOAD\n{}, GRAV, {}, {}, {}, {}", label(m_.regions[r].name, 'E', r), a.norm(), d.x(), d.y(), d.z());
+        line("*DLOAD\n{}, GRAV, {}, {}, {}, {}", label(m_.regions[r].name, 'E', r), number(a.norm()), number(d.x()),
+             number(d.y()), number(d.z()));
       }
     }
   }

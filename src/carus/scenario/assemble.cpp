@@ -7,6 +7,7 @@
 #include <set>
 
 #include "carus/core/error.hpp"
+#include "carus/scenario/unguided.hpp"
 
 namespace carus::scenario {
 
@@ -400,6 +401,10 @@ class Assembler {
 
 }  // namespace
 
-Assembly assemble(const Scenario& scenario, const Anatomy& anatomy) { return Assembler(scenario, anatomy).run(); }
+Assembly assemble(const Scenario& scenario, const Anatomy& anatomy) {
+  auto assembly = Assembler(scenario, anatomy).run();
+  if (const auto problems = guided_fetus(assembly.model); !problems.empty()) throw InputError(problems);
+  return assembly;
+}
 
 }  // namespace carus::scenario

@@ -274,6 +274,8 @@ class ModelReader {
     });
     m.contact_search = number("contact.search"), m.contact_correction = number("contact.correction_speed");
     m.contact_sweeps = int(number("contact.sweeps"));
+    m.barrier_distance = number("contact.barrier_distance"), m.barrier_pressure = number("contact.barrier_pressure");
+    m.newton_tolerance = number("numerics.newton_tolerance");
   }
 
   const Settings& s_;

@@ -96,6 +96,7 @@ struct ModelScenario {
   std::vector<ContactPair> contact_pairs;
   double contact_search = 0, contact_correction = 0;
   int contact_sweeps = 0;
+  double barrier_distance = 0, barrier_pressure = 0, newton_tolerance = 0;
   bool implicit = false;
   Analysis analysis = Analysis::dynamic;
   double duration = 0, time_scaling = 1, time_step = 0, safety = 0, drag = 0, max_node_speed = 0;

@@ -29,23 +29,36 @@ std::string named(double poisson, bool averaged) {
   return fmt::format("nu {:g}, {}", poisson, averaged ? "average nodal pressure" : "plain");
 }
 
-double inflated_radius(int cells, bool averaged, double pressure) {
-  constexpr double inner = 0.03, outer = 0.06;
-  auto material = soft(material::Law::neo_hooke, shear, 0.499);
-  material.average_nodal_pressure = averaged;
-  auto m = of(mesh::shapes::sphere_octant(inner, outer, cells, 2 * cells), {material});
-  for (int k = 0; k < 3; ++k) block(m, std::uint8_t(1 << k), [k](const Vec3& X) { return on(X[k], 0); });
-  fem::PressureLoad load;
-  load.surface = facets(m.mesh, [](const Vec3& X) { return on(X.norm(), inner); });
-  load.pressure = [pressure](double t) { return pressure * std::min(1.0, t); };
-  m.pressures = {load};
-  const auto x = equilibrium(m, 10, outer).x;
-  const auto enclosed = [&](const std::vector<Vec3>& at) {
-    double volume = 0;
-    for (const auto& t : load.surface) volume -= at[t[0]].dot(at[t[1]].cross(at[t[2]])) / 6;
-    return volume;
-  };
-  return inner * std::cbrt(enclosed(x) / enclosed(m.mesh.nodes));
+struct Sphere {
+  static constexpr double inner = 0.03, outer = 0.06, grown = 0.036;
+  fem::Model model;
+  /// The pressure rises to its full value at t = ramp.
+  Sphere(int cells, bool averaged, double ramp) {
+    auto material = soft(material::Law::neo_hooke, shear, 0.499);
+    material.average_nodal_pressure = averaged;
+    model = of(mesh::shapes::sphere_octant(inner, outer, cells, 2 * cells), {material});
+    for (int k = 0; k < 3; ++k) block(model, std::uint8_t(1 << k), [k](const Vec3& X) { return on(X[k], 0); });
+    fem::PressureLoad load;
+    load.surface = facets(model.mesh, [](const Vec3& X) { return on(X.norm(), inner); });
+    const double pressure = sphere_pressure(inner, outer, shear, grown);
+    load.pressure = [=](double t) { return pressure * std::min(1.0, t / ramp); };
+    model.pressures = {load};
+  }
+  /// Of the ball that the inner surface encloses.
+  [[nodiscard]] double inner_radius(const std::vector<Vec3>& x) const {
+    const auto enclosed = [&](const std::vector<Vec3>& at) {
+      double volume = 0;
+      for (const auto& t : model.pressures[0].surface) volume -= at[t[0]].dot(at[t[1]].cross(at[t[2]])) / 6;
+      return volume;
+    };
+    return inner * std::cbrt(enclosed(x) / enclosed(model.mesh.nodes));
+  }
+};
+
+/// Volumetric waves do 100 m/s; mass scaling of the slivers at the corner where the grid closes is harmless at rest.
+double radius_by_explicit(int cells, bool averaged) {
+  const Sphere s(cells, averaged, 0.05);
+  return s.inner_radius(relaxed(s.model, 0.15, 6e-5 / cells, 200).x);
 }
 
 /// Half of a block bent to the curvature kappa in plane strain: its end section x = L turns, u_x = -kappa L z.
@@ -87,18 +100,23 @@ double cook_stiffness(int n, double poisson, bool averaged) {
 }  // namespace
 
 std::vector<Check> thick_sphere() {
-  constexpr double inner = 0.03, grown = 0.036;
-  const double pressure = sphere_pressure(inner, 0.06, shear, grown);
+  constexpr double dilatation = Sphere::grown - Sphere::inner;
   std::vector<Check> checks;
+  double coarse = 0;
   for (const bool averaged : {false, true}) {
     std::vector<double> radius;
-    for (const int cells : {2, 4, 8}) radius.push_back(inflated_radius(cells, averaged, pressure));
-    auto c = refined(averaged ? "inner radius, average nodal pressure" : "inner radius, plain", "m", grown, radius,
-                     grown - inner);
+    for (const int cells : {2, 4, 8}) radius.push_back(radius_by_explicit(cells, averaged));
+    auto c = refined(averaged ? "inner radius, average nodal pressure" : "inner radius, plain", "m", Sphere::grown,
+                     radius, dilatation);
     // 8 elements through the wall, K/G = 500 against incompressible theory. Plain tets lock: from far off, slowly.
-    c.tolerance = averaged ? 0.03 : none_asked, c.least_order = averaged ? 1.6 : 0.3;
+    c.solver = "explicit", c.tolerance = averaged ? 0.03 : none_asked, c.least_order = averaged ? 1.6 : 0.3;
     checks.push_back(c);
+    coarse = radius[0];
   }
+  const Sphere s(2, true, 1);
+  // The explicit solver's rest and single precision, times K/G.
+  checks.push_back({"inner radius, average nodal pressure, coarsest mesh", "m", "implicit against explicit", coarse,
+                    s.inner_radius(equilibrium(s.model, 10, Sphere::inner).x), 1e-3, dilatation});
   return checks;
 }
 

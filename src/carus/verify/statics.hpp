@@ -14,6 +14,10 @@ struct Equilibrium {
 };
 Equilibrium equilibrium(const fem::Model& model, int increments, double length);
 
+/// The same by the explicit solver: loads over the first half of `duration` (give them so, up to t = duration/2), then
+/// rest; drag near twice the lowest angular frequency [1/s].
+Equilibrium relaxed(const fem::Model& model, double duration, double time_step, double drag);
+
 /// Nodes that `where` selects.
 std::vector<std::int32_t> nodes_where(const mesh::TetMesh& mesh, const std::function<bool(const Vec3& X)>& where);
 

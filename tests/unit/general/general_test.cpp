@@ -211,9 +211,34 @@ TEST(General, RefusesWithPlaceAndHint) {
   EXPECT_THAT(refusal("curves: [{name: c, points: [{time: 1 s}, {time: 0 s}]}]\n"), HasSubstr("rising times"));
   EXPECT_THAT(with("nodes: high,", "nodes: low,"), HasSubstr("are fixed, or moved by another motion"));
   EXPECT_THAT(with("analysis: quasi_static", "analysis: static"), HasSubstr("static needs solver.kind implicit"));
+  EXPECT_EQ(with("{analysis: quasi_static}", "{kind: implicit, analysis: static}"), "taken");
   EXPECT_THAT(with("poisson: 0.3}", "poisson: 0.3, prony: [{g: 0.6}, {g: 0.6}]}"), HasSubstr("the sum of prony g"));
   EXPECT_THAT(with("{shape: box, region: block, size: [20 mm, 20 mm, 20 mm], cells: [2, 2, 2]}", "{file: none.vtu}"),
               HasSubstr("none.vtu\" is not there"));
+}
+
+/// A birth is no special case, but for this.
+TEST(General, ABirthMayNotGuideTheFetus) {
+  const std::string birth = R"(
+kind: model
+meshes:
+  - {shape: ball, region: skull, radius: 10 mm, cells: [4]}
+  - {shape: tube, region: vaginal_canal, radius: 20 mm, inner_radius: 15 mm, height: 20 mm, cells: [1, 8, 2]}
+regions: [{name: skull, material: {c10: 10 kPa}}, {name: vaginal_canal, material: {c10: 10 kPa}}]
+)";
+  const auto built = [&](const std::string& more) -> std::string {
+    const auto s = scenario::parse_model(birth + more, "s.yaml");
+    try {
+      static_cast<void>(build(s, gather_meshes(s)));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "taken";
+  };
+  EXPECT_EQ(built("motions: [{nodes: vaginal_canal, displacement: [0 mm, 0 mm, 1 mm]}]\n"), "taken");
+  EXPECT_THAT(built("motions: [{nodes: skull, displacement: [0 mm, 0 mm, 1 mm]}]\n"),
+              HasSubstr("the motion of \"skull\" is prescribed in a birth"));
+  EXPECT_THAT(built("fixed: [{nodes: skull, axes: x}]\n"), HasSubstr("prescribed in a birth"));
 }
 
 /// The same key, its name misspelt, is proposed from the general model's own keys.
