@@ -51,6 +51,10 @@ double between(const std::vector<float>& values, const LabelVolume& v, std::size
 
 double level_of_volume(const std::vector<float>& values, const LabelVolume& v) {
   constexpr float inside = 0.99F, outside = 0.01F;  // farther from the level than it will ever be
+  constexpr int points = 8;
+  // The sequence of the plastic number's kin in three dimensions (Roberts 2018): in a fixed pattern the points beside a
+  // face along the grid would all have one value, and the level would jump over it.
+  constexpr std::array<double, 3> step{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
   std::ptrdiff_t wanted = 0;
   std::vector<float> near_surface;
   for (int k = 1; k + 1 < v.size[2]; ++k)
@@ -58,10 +62,15 @@ double level_of_volume(const std::vector<float>& values, const LabelVolume& v) {
       for (int i = 1; i + 1 < v.size[0]; ++i) {
         const auto at = v.index(i, j, k);
         if (values[at] <= outside || values[at] >= inside) continue;
-        wanted += v.labels[at] != 0 ? 27 : 0;
-        for (int p = 0; p < 27; ++p)
-          near_surface.push_back(static_cast<float>(
-              between(values, v, at, {(p % 3 - 1) / 3.0, (p / 3 % 3 - 1) / 3.0, (p / 9 - 1) / 3.0})));
+        wanted += v.labels[at] != 0 ? points : 0;
+        for (int p = 0; p < points; ++p) {
+          std::array<double, 3> off{};
+          for (int c = 0; c < 3; ++c) {
+            const double u = static_cast<double>(near_surface.size()) * step[c];
+            off[c] = u - std::floor(u) - 0.5;
+          }
+          near_surface.push_back(static_cast<float>(between(values, v, at, off)));
+        }
       }
   if (wanted == 0 || near_surface.empty()) return 0.5;
   const auto nth = near_surface.begin() + wanted - 1;

@@ -12,7 +12,7 @@ namespace carus::imaging {
 std::vector<float> smoothed_indicator(const LabelVolume& v, double smoothing);
 
 /// The level at which the smoothed organ keeps its volume, where one half would take from whatever is convex or thin:
-/// of 27 points spread over each voxel, as many pass it as lie in labelled voxels. v: as in smoothed_indicator, with
+/// of eight points spread over each voxel, as many pass it as lie in labelled voxels. v: as in smoothed_indicator, with
 /// two empty voxels on every side.
 double level_of_volume(const std::vector<float>& values, const LabelVolume& v);
 

@@ -5,6 +5,7 @@
 #include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellArrayIterator.h>
+#include <vtkExecutive.h>
 #include <vtkNew.h>
 #include <vtkPoints.h>
 #include <vtkXMLReader.h>
@@ -54,12 +55,14 @@ void run(vtkAlgorithm& algorithm, const std::string& name) {
   });
   const auto tag = algorithm.AddObserver(vtkCommand::ErrorEvent, listener);
   const auto warnings = algorithm.AddObserver(vtkCommand::WarningEvent, listener);
+  const auto executive = algorithm.GetExecutive()->AddObserver(vtkCommand::ErrorEvent, listener);  // it repeats them
   auto* xml = vtkXMLReader::SafeDownCast(&algorithm);
   if (xml != nullptr) xml->SetParserErrorObserver(listener);
   algorithm.Update();
   if (xml != nullptr) xml->SetParserErrorObserver(nullptr);
   algorithm.RemoveObserver(tag);
   algorithm.RemoveObserver(warnings);
+  algorithm.GetExecutive()->RemoveObserver(executive);
   if (problem.empty()) return;
   while (!problem.empty() && std::isspace(static_cast<unsigned char>(problem.back())) != 0) problem.pop_back();
   const auto end_of_place = problem.find("): ");  // "ERROR: In file, line n\nClass (0x...): what"

@@ -45,7 +45,13 @@ void write_surface(const mesh::Surface& s, const std::filesystem::path& file, co
   } else if (kind == ".ply") {
     vtkNew<vtkPLYWriter> writer;
     writer->SetFileTypeToBinary();
-    write(*writer, *data, file);
+    write_atomically(file, [&](const std::filesystem::path& temporary) {
+      writer->SetInputData(data);
+      writer->SetFileName(temporary.c_str());
+      if (writer->Write() == 0) throw InputError(fmt::format("{}: cannot be written", file.string()));
+      // To a name that does not end so the writer adds ".ply".
+      std::filesystem::rename(temporary.string() + ".ply", temporary);
+    });
   } else if (kind == ".vtp") {
     vtkNew<vtkXMLPolyDataWriter> writer;
     writer->SetCompressionLevel(1);
