@@ -174,8 +174,8 @@ class Finder {
     const auto& nodes = sides_[side];
     auto& p = l_.points;
     p["spine_" + name] =
-        best(where(nodes, [](const Vec3& x) { return x.z() > -0.095 && x.z() < -0.050 && x.y() > -0.030; }),
-             "ischial spine, " + name, [&](const Vec3& x) { return inward(x) - x.y() - x.z(); });
+        best(where(nodes, [](const Vec3& x) { return x.z() > -0.095 && x.z() < -0.050 && std::abs(x.y()) < 0.030; }),
+             "ischial spine, " + name, [&](const Vec3& x) { return 3 * inward(x) - x.y() - x.z(); });
     const auto front = where(nodes, [](const Vec3& x) { return x.y() > 0; });
     const Vec3 low = best(front, "tuberosity, " + name, [](const Vec3& x) { return -x.z(); });
     const auto tuber =

@@ -38,8 +38,9 @@ struct BonyLandmarks {
 ///                       farthest down along the joint
 ///     promontory        of the sacrum's nodes within 10 mm of the median plane and in its upper third, the foremost
 ///     frame             origin halfway between promontory and top of the symphysis, y along that line, x to the right
-///     spines            on each side, of the ischium's nodes 50 to 95 mm below the inlet (those not more than 30 mm
-///                       behind its centre), the one farthest inward, backward and downward alike
+///     spines            on each side, of the ischium's nodes 50 to 95 mm below the inlet (within 30 mm of its centre
+///     in y),
+///                       the one farthest inward, a third as much backward and downward
 ///     tuberosities      on each side, of the ischium's nodes within 12 mm of its lowest in height and in y, the
 ///     innermost coccyx tip        the coccyx' node farthest from the sacrum sacrum tip        the sacrum's node
 ///     nearest to the coccyx hinge             on the sacrum's front in the median plane, at 0.55 of the way from

@@ -18,7 +18,10 @@
 namespace carus {
 namespace {
 
-/// The generated pelvis stood upright, as in an image: its inlet leans forward by 55 degrees.
+/// The generated pelvis leant forward by 20 degrees. A real one leans by 55 to 70, but its sacrum goes back above the
+/// promontory; the generated one goes on up, and so would be foremost at its upper edge.
+constexpr double lean = -0.35;
+
 anatomy::PelvicBones upright_bones(const anatomy::Pelvis& pelvis, const Eigen::Affine3d& stood) {
   constexpr double h = 0.002;
   const Eigen::Affine3d back = stood.inverse();
@@ -34,13 +37,15 @@ TEST(BonyLandmarks, OfAGeneratedPelvisAreWhereItWasGivenThem) {
   const anatomy::PelvisParameters p;
   const anatomy::Pelvis pelvis(p, {});
   Eigen::Affine3d stood = Eigen::Affine3d::Identity();
-  stood.translate(Vec3(0.01, -0.05, 0.2)).rotate(Eigen::AngleAxisd(-0.96, Vec3::UnitX()));
+  stood.translate(Vec3(0.01, -0.05, 0.2)).rotate(Eigen::AngleAxisd(lean, Vec3::UnitX()));
   const auto found = anatomy::find_landmarks(upright_bones(pelvis, stood));
   const auto given = pelvis.landmarks();
-  // Three voxels: the landmarks are nodes, and bones lose their sharp points in voxels of 2 mm.
-  for (const char* name : {"promontory", "symphysis_top", "coccyx_tip"}) {
+  // Three voxels: the landmarks are nodes, and bones lose their sharp points in voxels of 2 mm. The coccyx ends in an
+  // edge of 16 mm, either corner of which is its tip: half of that more, in x.
+  for (const auto& [name, tolerance] :
+       {std::pair{"promontory", 0.0065}, {"symphysis_top", 0.0065}, {"coccyx_tip", 0.0105}}) {
     const Vec3 off = found.points.at(name) - given.at(name);
-    EXPECT_LT(off.norm(), 0.0065) << name << " " << 1e3 * off.transpose();
+    EXPECT_LT(off.norm(), tolerance) << name << " " << 1e3 * off.transpose();
   }
   const auto expect = [&](const char* name, double wanted, double tolerance) {
     EXPECT_NEAR(found.measures.at(name), wanted, tolerance) << name;
@@ -51,13 +56,14 @@ TEST(BonyLandmarks, OfAGeneratedPelvisAreWhereItWasGivenThem) {
   expect("sagittal_outlet", p.sagittal_outlet, 0.008);
   // The frame is the generated one: it takes the pelvis back to where it came from.
   EXPECT_LT((found.frame.to_ras(Vec3::Zero()) - stood.translation()).norm(), 0.005);
-  EXPECT_LT((found.frame.rotation * stood.linear() - Mat3::Identity()).norm(), 0.08);
+  // Both ends of the conjugate may be 6 mm off its 122 mm: 0.1 rad, times sqrt 2 in this norm.
+  EXPECT_LT((found.frame.rotation * stood.linear() - Mat3::Identity()).norm(), 0.14);
 }
 
 TEST(BonyLandmarks, ExchangedSidesAreRefused) {
   const anatomy::Pelvis pelvis({}, {});
   Eigen::Affine3d stood = Eigen::Affine3d::Identity();
-  stood.translate(Vec3(0.01, -0.05, 0.2)).rotate(Eigen::AngleAxisd(-0.96, Vec3::UnitX()));
+  stood.translate(Vec3(0.01, -0.05, 0.2)).rotate(Eigen::AngleAxisd(lean, Vec3::UnitX()));
   auto bones = upright_bones(pelvis, stood);
   std::swap(bones.left, bones.right);
   try {
