@@ -20,6 +20,8 @@ bool on(double a, double b) { return std::abs(a - b) < 1e-9; }
 using verify::flat_face;
 using verify::press;
 
+constexpr double slider_side = 0.04, slider_height = 0.02, slider_pressure = 500;  // [m], [m], [Pa]
+
 /// Mean displacement and speed, along x, of a block pressed on a rigid plate.
 struct Slide {
   double displacement, speed;

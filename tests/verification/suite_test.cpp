@@ -28,7 +28,7 @@ std::vector<std::string> quick() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Verify, Suite, testing::ValuesIn(quick()), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Verify, Suite, testing::ValuesIn(quick()), [](const auto& problem) { return problem.param; });
 
 /// The suite can fail: by a number, by an order, by an error, by being empty.
 TEST(SuiteItself, NoticesFailure) {
