@@ -153,6 +153,7 @@ class Contact {
   void renew(const std::vector<Vec3>& x);
   void begin_stretch(const std::vector<Vec3>& x);
   void measure_motion(const std::vector<Vec3>& x);
+  [[nodiscard]] double farthest_since_look(const std::vector<Vec3>& x) const;
   [[nodiscard]] bool worn_out() const;
   [[nodiscard]] double travel(const Pass& p) const { return motion_[p.nodes].travel + motion_[p.facets].travel; }
   void look(const std::vector<Vec3>& x, double needed);
@@ -204,7 +205,7 @@ class Contact {
   std::array<double, parts - 1> cuts_{};  ///< [m] along the axis
   double dt_ = 0, closing_ = 0;           ///< [s], [m]: what two nodes may near each other by in a step
   bool look_due_ = true;
-  double since_look_ = 0;  ///< [m] that the fastest node of all may have travelled since the last look
+  double since_look_ = 0;  ///< [m] that any node may be from where it was at the last look
   double held_below_ = 0;  ///< [m] gap below which the last look left constraints
   int steps_since_normals_ = never;
   int steps_since_renewal_ = never;

@@ -218,6 +218,19 @@ void Contact::measure_motion(const std::vector<Vec3>& x) {
   }
 }
 
+/// How far any node of a surface is from where it was at the last look [m]. A node that trembles is not far, however
+/// fast.
+double Contact::farthest_since_look(const std::vector<Vec3>& x) const {
+  double most = 0;
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    if (!moves_[s]) continue;
+    const auto& nodes = surfaces_[s].nodes;
+    for (std::size_t v = 0; v < nodes.size(); ++v)
+      most = std::max(most, (x[nodes[v]] - motion_[s].at_look[v]).squaredNorm());
+  }
+  return std::sqrt(most);
+}
+
 /// Of what moves; a fixed bone has had its normals since the start.
 void Contact::update_normals(const std::vector<Vec3>& x) {
   steps_since_normals_ = 0;
@@ -440,7 +453,9 @@ void Contact::look(const std::vector<Vec3>& x, double needed) {
 bool Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
   dt_ = dt, closing_ = 2 * dt * max_speed;
   const double needed = options_.activation + closing_;
-  const bool looks = look_due_ || steps_since_renewal_ >= renew_every || held_below_ - 2 * since_look_ < needed;
+  const auto spent = [&] { return held_below_ - 2 * since_look_ < needed; };
+  if (!look_due_ && spent()) since_look_ = farthest_since_look(x);
+  const bool looks = look_due_ || steps_since_renewal_ >= renew_every || spent();
   if (looks) {
     look(x, needed);
   } else {

@@ -15,6 +15,7 @@ namespace {
 constexpr double touching = 1e-9;       // [m] less is no penetration
 constexpr double crease = 0.643;        // cos 50°
 constexpr double most_sagitta = 0.001;  // [m] more is an edge, not a curved surface
+constexpr double as_near = 2e-5;        // [m] to the nearest facet and to another of its edge
 
 bool has(const auto& simplex, std::int32_t node) {
   return std::find(simplex.begin(), simplex.end(), node) != simplex.end();
@@ -142,24 +143,37 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
   const auto& tets = body.tets;
   constexpr double far = std::numeric_limits<double>::infinity();
 
-  // Distance to the nearest facet within r, and the sagitta there; or infinity.
-  const auto nearest = [&](std::int32_t node, double r) {
+  // Distance to the nearest facet within r, or infinity, and the sagitta there. Across an edge that is sharp at rest
+  // two facets are equally near but stand for two surfaces: the nearer one of these counts.
+  struct Near {
+    double distance;
+    std::int32_t facet;
+    Vec3 weights;
+  };
+  const auto nearest = [&](std::int32_t node, double r, bool in) {
     double least = far;
-    std::int32_t facet = -1;
-    Vec3 weights = Vec3::Zero();
+    std::vector<Near> near;
     const Vec3& p = x[node];
     onto.facet_grid.visit(Box(p.array() - r, p.array() + r), [&](std::int32_t f) {
       const auto& t = triangles[f];
-      const double near2 = std::min(r * r, least * least);
+      const double limit = std::min(r, least + as_near), near2 = limit * limit;
       if (onto.facet_boxes[f].squaredExteriorDistance(p) > near2) return;
       const Vec3 area = area_of(x, t);  // the plane is nearer than the facet: most are ruled out by it
       const double along = area.dot(p - x[t[0]]);
       if (along * along > near2 * area.squaredNorm() || has(t, node)) return;
       const Vec3 w = mesh::closest_point_weights(p, x[t[0]], x[t[1]], x[t[2]]);
       const double d = (p - w[0] * x[t[0]] - w[1] * x[t[1]] - w[2] * x[t[2]]).norm();
-      if (d <= r && d < least) least = d, facet = f, weights = w;
+      if (d > limit) return;
+      near.push_back({d, f, w});
+      least = std::min(least, d);
     });
-    return facet < 0 ? Gap{far, 0} : Gap{least, sagitta(x, body, facet, weights)};
+    Gap found{least, in ? far : -far};
+    for (const Near& n : near) {
+      if (n.distance > least + as_near) continue;
+      const double s = sagitta(x, body, n.facet, n.weights);
+      found.smooth = in ? std::min(found.smooth, s) : std::max(found.smooth, s);
+    }
+    return found;
   };
   const auto gap = [&](std::int32_t node) -> Gap {
     const Vec3& p = x[node];
@@ -168,9 +182,10 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
       in = in || (onto.tet_boxes[e].contains(p) && !has(tets[e], node) && inside(p, x, tets[e]));
     });
     if (!in && pass.self) return {search_, search_};
-    Gap found = nearest(node, search_);
-    if (!in) return {std::min(search_, found.flat), std::min(search_, found.flat - found.smooth)};
-    for (double r = 4 * search_; found.flat == far; r *= 4) found = nearest(node, r);
+    Gap found = nearest(node, search_, in);
+    if (!in && found.flat == far) return {search_, search_};
+    if (!in) return {found.flat, std::min(search_, found.flat - found.smooth)};
+    for (double r = 4 * search_; found.flat == far; r *= 4) found = nearest(node, r, in);
     return {-found.flat, -found.flat - found.smooth};
   };
 
