@@ -57,27 +57,6 @@ solve::ExplicitOptions explicit_options(const ModelScenario& s, const fem::Model
   return o;
 }
 
-/// The implicit solver as a run sees it. It has no step that stability would ask for.
-class ImplicitEngine final : public results::Engine {
- public:
-  ImplicitEngine(const fem::Model& model, const solve::ImplicitOptions& options, double duration)
-      : step_(options.time_step), duration_(duration), solver_(model, options) {}
-  void advance_to(double time) override { solver_.advance_to(time); }
-  const fem::State& state() const override { return solver_.state(); }
-  void restore(const fem::State& state) override { solver_.restore(state); }
-  solve::Observables observe() const override { return solver_.observe(); }
-  std::vector<std::pair<std::string, double>> timings() const override { return solver_.timings(); }
-  Facts facts() const override {
-    Facts f;
-    f.steps = std::int64_t(std::ceil(duration_ / step_)), f.step.time_step = step_;
-    return f;
-  }
-
- private:
-  double step_, duration_;
-  solve::Implicit solver_;
-};
-
 solve::ImplicitOptions implicit_options(const ModelScenario& s, const fem::Model& model) {
   solve::ImplicitOptions o;
   o.time_step = s.time_step > 0 ? s.time_step : s.duration / 100;
@@ -306,7 +285,7 @@ class Run {
 }  // namespace
 
 std::unique_ptr<results::Engine> make_engine(const ModelScenario& s, const fem::Model& model) {
-  if (s.implicit) return std::make_unique<ImplicitEngine>(model, implicit_options(s, model), s.duration);
+  if (s.implicit) return results::make_engine(model, implicit_options(s, model), s.duration);
   return results::make_engine(model, explicit_options(s, model));
 }
 

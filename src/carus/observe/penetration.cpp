@@ -195,7 +195,7 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
   });
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     out.penetrated += gaps[i].flat < -touching;
-    if (gaps[i].smooth < out.least_smooth_gap) out.least_smooth_gap = gaps[i].smooth, out.smooth_node = pass.nodes[i];
+    out.least_smooth_gap = std::min(out.least_smooth_gap, gaps[i].smooth);
     if (gaps[i].flat < out.least_gap) {
       out.least_gap = gaps[i].flat;
       out.node = pass.nodes[i];
@@ -205,7 +205,7 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
 
 std::vector<Penetration> PenetrationCheck::check(const std::vector<Vec3>& x) const {
   std::vector<Penetration> result;
-  for (const auto& [a, b] : joined_) result.push_back({bodies_[a].name, bodies_[b].name, search_, search_, -1, -1, 0});
+  for (const auto& [a, b] : joined_) result.push_back({bodies_[a].name, bodies_[b].name, search_, search_, -1, 0});
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     std::optional<Search> search;
     for (const auto& pass : passes_) {

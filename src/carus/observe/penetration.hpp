@@ -15,8 +15,7 @@ struct Penetration {
   double least_gap = 0;         ///< [m] over both passes, at most `search`; negative: deepest penetration
   double least_smooth_gap = 0;  ///< [m] the same against the surface that the facets stand for: see `PenetrationCheck`
   std::int32_t node = -1;       ///< the node that has least_gap
-  std::int32_t smooth_node = -1;  ///< the node that has least_smooth_gap
-  int penetrated = 0;             ///< nodes that lie inside the other body
+  int penetrated = 0;           ///< nodes that lie inside the other body
 };
 
 /// Contact nodes of a body against all of another's boundary, and the other way round, for any two bodies that some

@@ -72,13 +72,16 @@ class ImplicitEngine final : public Engine {
 
 std::unique_ptr<Engine> make_engine(const scenario::Scenario& scenario, const fem::Model& model) {
   if (scenario.solver == scenario::SolverKind::implicit_dynamics)
-    return std::make_unique<ImplicitEngine>(model, scenario::implicit_options(scenario),
-                                            scenario.numerics.labour_duration);
+    return make_engine(model, scenario::implicit_options(scenario), scenario.numerics.labour_duration);
   return make_engine(model, scenario::explicit_options(scenario));
 }
 
 std::unique_ptr<Engine> make_engine(const fem::Model& model, const solve::ExplicitOptions& options) {
   return std::make_unique<ExplicitEngine>(model, options);
+}
+
+std::unique_ptr<Engine> make_engine(const fem::Model& model, const solve::ImplicitOptions& options, double duration) {
+  return std::make_unique<ImplicitEngine>(model, options, duration);
 }
 
 }  // namespace carus::results

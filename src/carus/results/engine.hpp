@@ -35,5 +35,7 @@ class Engine {
 std::unique_ptr<Engine> make_engine(const scenario::Scenario& scenario, const fem::Model& model);
 /// The explicit solver with these options.
 std::unique_ptr<Engine> make_engine(const fem::Model& model, const solve::ExplicitOptions& options);
+/// The implicit solver with these options, for `duration` [s].
+std::unique_ptr<Engine> make_engine(const fem::Model& model, const solve::ImplicitOptions& options, double duration);
 
 }  // namespace carus::results

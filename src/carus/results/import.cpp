@@ -2,7 +2,6 @@
 #include "carus/results/import.hpp"
 
 #include <fmt/format.h>
-#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
@@ -11,16 +10,15 @@
 #include <vtkNew.h>
 #include <vtkSmartPointer.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string_view>
 
 #include "carus/core/error.hpp"
 #include "carus/results/checkpoint.hpp"
 #include "carus/results/export.hpp"
 #include "carus/results/files.hpp"
+#include "carus/results/vtu_file.hpp"
 
 namespace carus::results {
 namespace {
@@ -31,22 +29,8 @@ using Json = nlohmann::json;
 /// One VTU file of a body.
 class BodyFile {
  public:
-  explicit BodyFile(fs::path file) : file_(std::move(file)) {
-    if (!fs::exists(file_)) refuse("no such file");
-    if (!is_whole()) refuse("is not a VTU file, or is truncated");  // VTK does not miss what follows the last block
-    bool broken = false;
-    vtkNew<vtkCallbackCommand> on_error;
-    on_error->SetClientData(&broken);
-    on_error->SetCallback([](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
-    reader->SetReaderErrorObserver(on_error);
-    reader->SetParserErrorObserver(on_error);
-    if (!reader->CanReadFile(file_.c_str())) refuse("is not a VTU file of an unstructured grid");
-    reader->SetFileName(file_.c_str());
-    reader->Update();
-    grid_ = reader->GetOutput();
-    if (broken || grid_ == nullptr) refuse("is damaged or truncated");
-  }
+  explicit BodyFile(fs::path file)
+      : file_(std::move(file)), grid_(read_vtu(file_, [this](const std::string& what) { refuse(what); })) {}
 
   anatomy::Body body(const std::string& name) {
     anatomy::Body b;
@@ -85,12 +69,6 @@ class BodyFile {
   }
 
  private:
-  [[nodiscard]] bool is_whole() const {
-    const std::string text = read_text(file_);
-    const auto end = text.find_last_not_of(" \r\n");
-    return end != std::string::npos && std::string_view(text).substr(0, end + 1).ends_with("</VTKFile>");
-  }
-
   void read_mesh(mesh::TetMesh& m) {
     if (grid_->GetNumberOfCells() == 0) refuse("has no cells");
     m.nodes.resize(std::size_t(grid_->GetNumberOfPoints()));

@@ -2,23 +2,20 @@
 #include "carus/results/read_mesh.hpp"
 
 #include <fmt/format.h>
-#include <vtkCallbackCommand.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
-#include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
 #include <vtkUnstructuredGrid.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include <cmath>
 #include <map>
 
 #include "carus/core/error.hpp"
 #include "carus/results/export.hpp"
-#include "carus/results/files.hpp"
+#include "carus/results/vtu_file.hpp"
 
 namespace carus::results {
 namespace {
@@ -27,25 +24,8 @@ namespace fs = std::filesystem;
 
 class VtuFile {
  public:
-  explicit VtuFile(fs::path file) : file_(std::move(file)) {
-    if (!fs::is_regular_file(file_)) refuse("no such file");
-    const std::string text = read_text(file_);
-    const auto end = text.find_last_not_of(" \r\n");
-    if (end == std::string::npos || !text.substr(0, end + 1).ends_with("</VTKFile>"))
-      refuse("is not a VTU file, or is truncated");  // VTK does not miss what follows the last block
-    bool broken = false;
-    vtkNew<vtkCallbackCommand> on_error;
-    on_error->SetClientData(&broken);
-    on_error->SetCallback([](vtkObject*, unsigned long, void* flag, void*) { *static_cast<bool*>(flag) = true; });
-    vtkNew<vtkXMLUnstructuredGridReader> reader;
-    reader->SetReaderErrorObserver(on_error);
-    reader->SetParserErrorObserver(on_error);
-    if (!reader->CanReadFile(file_.c_str())) refuse("is not a VTU file of an unstructured grid");
-    reader->SetFileName(file_.c_str());
-    reader->Update();
-    grid_ = reader->GetOutput();
-    if (broken || grid_ == nullptr) refuse("is damaged or truncated");
-  }
+  explicit VtuFile(fs::path file)
+      : file_(std::move(file)), grid_(read_vtu(file_, [this](const std::string& what) { refuse(what); })) {}
 
   mesh::NamedMesh read() {
     mesh::NamedMesh m;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "carus/core/error.hpp"
+#include "carus/core/stopwatch.hpp"
 #include "carus/fem/constraints.hpp"
 #include "carus/fem/pressure.hpp"
 #include "carus/solve/energy.hpp"
@@ -16,18 +16,6 @@ namespace {
 constexpr int loads_every = 4;  // steps: surfaces turn slowly against the step
 constexpr int sample_contact_every =
     7;  // steps, for the mean contact force between two observations; no multiple of another rhythm
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 }  // namespace
 

@@ -3,12 +3,12 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
 #include "carus/contact/intersection.hpp"
 #include "carus/core/error.hpp"
+#include "carus/core/stopwatch.hpp"
 #include "carus/fem/constraints.hpp"
 #include "carus/fem/elastic.hpp"
 #include "carus/fem/pressure.hpp"
@@ -24,18 +24,6 @@ namespace {
 enum Stage { elements, assembly, linear, line_search, contact_forces, collision, loads, proof, stage_count };
 constexpr const char* stage_names[stage_count] = {
     "elements", "assembly", "linear solve", "line search", "contact forces", "collision detection", "loads", "proof"};
-
-class Stopwatch {
- public:
-  explicit Stopwatch(double& sum) : sum_(sum), start_(std::chrono::steady_clock::now()) {}
-  ~Stopwatch() { sum_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-  Stopwatch(const Stopwatch&) = delete;
-  Stopwatch& operator=(const Stopwatch&) = delete;
-
- private:
-  double& sum_;
-  std::chrono::steady_clock::time_point start_;
-};
 
 struct Work {
   double external = 0, contact = 0, damping = 0, active = 0;

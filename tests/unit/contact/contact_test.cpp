@@ -95,6 +95,38 @@ TEST(Contact, SmoothGapSeesTheSphereNotTheFacets) {
   EXPECT_LT(off_smooth, 0.2 * off_facets);
 }
 
+/// Between looks a constraint keeps its foot and its gap changes along its normal: what that leaves out is small
+/// against the way gone.
+TEST(Contact, GapBetweenLooksIsThatOfANewSearch) {
+  constexpr double r = 0.03, step = 2e-5;
+  const auto b = two(shapes::ball(Vec3::Zero(), r, 12, 0), shapes::ball({0, 0, 2 * r + 5e-5}, r, 10, 1));
+  Options options;
+  options.activation = 3e-3;
+  auto held = make(b, 1e-3, 0, options);
+  ASSERT_TRUE(held.detect(b.mesh.nodes, step, 1));
+  const auto before = held.constraints();
+  auto x = b.mesh.nodes;
+  const Vec3 slide(step, 0, -0.5 * step);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (x[i].z() > r + 1e-6) x[i] += slide;
+  held.moved(slide.norm());
+  ASSERT_FALSE(held.detect(x, step, 1));
+  auto anew = make(b, 1e-3, 0, options);
+  ASSERT_TRUE(anew.detect(x, step, 1));
+  int same = 0;
+  double change = 0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const Constraint& c = held.constraints()[i];
+    for (const Constraint& d : anew.constraints()) {
+      if (c.node != d.node || c.facet != d.facet) continue;
+      EXPECT_NEAR(c.gap, d.gap, 0.03 * slide.norm());  // a corner normal leans by some degrees against the next
+      change = std::max(change, std::abs(c.gap - before[i].gap)), ++same;
+    }
+  }
+  EXPECT_GE(same, 8);
+  EXPECT_GT(change, 5e-6);  // the gaps did move
+}
+
 /// Against an exact search that shares nothing with the contact: after a press both see the same depth within the
 /// sagitta.
 TEST(Contact, LeastGapAgreesWithBruteForce) {
