@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "carus/mesh/closest_point.hpp"
 #include "support/models.hpp"
 
 namespace carus {

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "carus/core/error.hpp"
+#include "carus/mesh/closest_point.hpp"
 
 namespace carus::anatomy {
 namespace {

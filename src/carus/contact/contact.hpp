@@ -50,7 +50,7 @@ struct HingeBody {
 };
 
 struct Options {
-  double activation = 1e-4;      ///< [m] gap below which a pair always enters the solve
+  double activation = 1e-4;      ///< [m] a pair enters the solve when its gap is less than that and what may close it
   double reach = 0.010;          ///< [m] distance up to which pairs are looked for at a renewal
   double correction_speed = 1;   ///< [m/s] at most, outward, where penetrated
   double max_depth = 0.004;      ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
@@ -60,25 +60,25 @@ struct Options {
   int sweeps = 3;
 };
 
-/// Node against facet: v_rel = n.(v_node - sum w_k v_k) >= target.
+/// Node against facet: v_rel = n.(v_node - sum w_k v_k) >= target. What a step reads of a pair that does not touch lies
+/// in the first two lines of the cache.
 struct alignas(64) Constraint {
   std::int32_t node;
   std::array<std::int32_t, 3> facet;
   std::array<double, 3> w;
   Vec3 n;
-  double mass;                   ///< effective mass [kg]
-  double target;                 ///< least normal speed [m/s]
-  double impulse;                ///< [N s], >= 0
+  double gap;      ///< [m] on the smooth gap
+  double shift;    ///< [m] gap = n.(x_node - sum w_k x_k) + shift, until the foot is found anew
+  double target;   ///< least normal speed [m/s]
+  double impulse;  ///< [N s], >= 0
+  double mass;     ///< effective mass [kg]
+  std::int32_t probe;
+  std::int32_t part;  ///< see Contact::parts
+  float friction;
+  std::int16_t hinge_node, hinge_facet;  ///< -1: none
   std::array<Vec3, 4> response;  ///< velocities that a unit impulse gives to the node and to the facet's corners [1/kg]
-  // What the sweeps of a frictionless contact do not read.
-  double gap;                      ///< [m] on the smooth gap
-  double shift;                    ///< [m] gap = n.(x_node - sum w_k x_k) + shift, until the foot is found anew
   double lever_node, lever_facet;  ///< axis.((p - o) x n) of the hinges
   Vec3 slip;                       ///< tangential impulse [N s]
-  std::int32_t probe;
-  std::int16_t hinge_node, hinge_facet;  ///< -1: none
-  float friction;
-  std::int32_t part;  ///< see Contact::parts
 };
 
 /// Frictionless or Coulomb contact between moving surfaces by impulses: find gaps, then projected Gauss-Seidel on
@@ -156,7 +156,7 @@ class Contact {
   [[nodiscard]] double farthest_since_look(const std::vector<Vec3>& x) const;
   [[nodiscard]] bool worn_out() const;
   [[nodiscard]] double travel(const Pass& p) const { return motion_[p.nodes].travel + motion_[p.facets].travel; }
-  void look(const std::vector<Vec3>& x, double needed);
+  void look(const std::vector<Vec3>& x);
   void constrain_all(const std::vector<Vec3>& x);
   void constrain_chunk(std::size_t begin, std::size_t end, const std::vector<Vec3>& x, std::vector<Constraint>& out);
   void gather_parts(const std::vector<Vec3>& x);
@@ -206,6 +206,7 @@ class Contact {
   double dt_ = 0, closing_ = 0;           ///< [s], [m]: what two nodes may near each other by in a step
   bool look_due_ = true;
   double since_look_ = 0;  ///< [m] that any node may be from where it was at the last look
+  double needed_ = 0;      ///< [m] gap below which a pair must be in the solve of this step
   double held_below_ = 0;  ///< [m] gap below which the last look left constraints
   int steps_since_normals_ = never;
   int steps_since_renewal_ = never;

@@ -6,6 +6,7 @@
 
 #include "carus/contact/contact.hpp"
 #include "carus/core/parallel.hpp"
+#include "carus/mesh/closest_point.hpp"
 
 namespace carus::contact {
 
@@ -16,7 +17,7 @@ constexpr std::size_t constraint_chunk = 512;
 constexpr int normals_every = 8;      // steps, about: normals turn slowly against the step
 constexpr int renew_every = 400;      // steps at most, so that folds find their new partner
 constexpr int look_every = 10;        // steps, about: fewer cost looks, more hold constraints that do not touch
-constexpr double look_within = 2e-4;  // [m] of travel: the foot on its facet and the normal there stay good for that
+constexpr double look_within = 8e-4;  // [m] of travel, both sides': so far the foot and its normal stay good
 constexpr double awake = -std::numeric_limits<double>::infinity();
 
 Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3& w) {
@@ -383,7 +384,7 @@ void Contact::load(const double* saved, const std::vector<Vec3>& x) {
 void Contact::constrain_chunk(std::size_t begin, std::size_t end, const std::vector<Vec3>& x,
                               std::vector<Constraint>& out) {
   out.clear();
-  Constraint c;
+  Constraint c{};
   double clearance = 0;
   for (std::size_t i = begin; i < end; ++i) {
     Probe& probe = probes_[std::size_t(near_[i])];
@@ -425,7 +426,7 @@ void Contact::refresh(const std::vector<Vec3>& x) {
       const Vec3 foot = c.w[0] * x[c.facet[0]] + c.w[1] * x[c.facet[1]] + c.w[2] * x[c.facet[2]];
       c.gap = c.n.dot(x[c.node] - foot) + c.shift;
       c.target = target(c.gap);
-      c.slip.setZero();
+      if (c.friction > 0) c.slip.setZero();
     }
   });
 }
@@ -435,10 +436,9 @@ void Contact::keep_impulses() {
   for (const Constraint& c : constraints_) probes_[std::size_t(c.probe)].impulse = c.impulse;
 }
 
-/// `needed`: gap below which a pair must be in the solve of this step.
-void Contact::look(const std::vector<Vec3>& x, double needed) {
+void Contact::look(const std::vector<Vec3>& x) {
   keep_impulses();
-  held_below_ = needed + std::min(look_every * closing_, look_within);
+  held_below_ = needed_ + std::min(look_every * closing_, look_within);
   measure_motion(x);
   since_look_ = 0;
   if (steps_since_renewal_ >= renew_every || worn_out()) {
@@ -452,12 +452,12 @@ void Contact::look(const std::vector<Vec3>& x, double needed) {
 
 bool Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
   dt_ = dt, closing_ = 2 * dt * max_speed;
-  const double needed = options_.activation + closing_;
-  const auto spent = [&] { return held_below_ - 2 * since_look_ < needed; };
+  needed_ = options_.activation + closing_;
+  const auto spent = [&] { return held_below_ - 2 * since_look_ < needed_; };
   if (!look_due_ && spent()) since_look_ = farthest_since_look(x);
   const bool looks = look_due_ || steps_since_renewal_ >= renew_every || spent();
   if (looks) {
-    look(x, needed);
+    look(x);
   } else {
     refresh(x);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "carus/mesh/closest_point.hpp"
 #include "carus/mesh/tet_mesh.hpp"
 
 namespace carus::contact {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double least_near = 1e-5;  // [m]
 
-Vec3 relative(const Constraint& c, const std::vector<Vec3>& v) {
+inline Vec3 relative(const Constraint& c, const std::vector<Vec3>& v) {
   return v[c.node] - (c.w[0] * v[c.facet[0]] + c.w[1] * v[c.facet[1]] + c.w[2] * v[c.facet[2]]);
 }
 
@@ -54,8 +54,8 @@ double Contact::relax(Constraint& c, std::vector<Vec3>& v, std::vector<double>& 
   return speed;
 }
 
-/// Most pairs that might touch do not: what the first sweep leaves further apart at the end of the step than later
-/// sweeps can bring it back is left alone by them.
+/// Most pairs that might touch do not. What is too far apart to touch in this step is not looked at; what the first
+/// sweep leaves further apart at the end of the step than later sweeps can bring it back is left alone by them.
 void Contact::sweep(int part, int number, std::vector<Vec3>& v, std::vector<double>& rate) {
   auto& live = live_[std::size_t(part)];
   if (number > 0) {
@@ -66,6 +66,7 @@ void Contact::sweep(int part, int number, std::vector<Vec3>& v, std::vector<doub
   const double near = std::clamp(2 * closing_, least_near, options_.activation);
   for (auto i = part_begin_[std::size_t(part)]; i < part_begin_[std::size_t(part) + 1]; ++i) {
     Constraint& c = constraints_[i];
+    if (c.impulse == 0 && c.gap > needed_) continue;
     const double speed = relax(c, v, rate);
     if (c.impulse > 0 || dt_ * (speed - c.target) < near) live.push_back(std::int32_t(i));
   }

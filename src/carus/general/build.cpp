@@ -9,6 +9,7 @@
 #include <set>
 
 #include "carus/core/error.hpp"
+#include "carus/mesh/closest_point.hpp"
 #include "carus/scenario/schema.hpp"
 #include "carus/scenario/text.hpp"
 #include "carus/scenario/unguided.hpp"

@@ -55,7 +55,4 @@ struct NamedSurface {
 /// case.
 double least_gap(const std::vector<Vec3>& xa, const Triangles& a, const std::vector<Vec3>& xb, const Triangles& b);
 
-/// Closest point of triangle (a,b,c) to p: its barycentric weights.
-Vec3 closest_point_weights(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-
 }  // namespace carus::mesh

@@ -9,6 +9,7 @@
 #include "carus/anatomy/abdomen.hpp"
 #include "carus/anatomy/measure.hpp"
 #include "carus/core/error.hpp"
+#include "carus/mesh/spatial_order.hpp"
 #include "carus/meshing/keep_clear.hpp"
 #include "carus/meshing/labelled_solid.hpp"
 #include "carus/meshing/layer.hpp"
@@ -122,6 +123,7 @@ Anatomy build(const Parameters& given) {
   a.uterus = {
       "uterus", mesh_wall(uterus, PelvicFloor(p.abdomen, p.canal), p.abdomen.levator_thickness, p.mesh.uterus), {}, {}};
   a.abdomen = {"abdomen", mesh_abdomen(p, abdomen, uterus, pelvis, fetus), {}, {}};
+  for (Body* body : {&a.fetus, &a.uterus, &a.abdomen}) mesh::order_spatially(body->mesh);
   name_fetus(a.fetus);
   name_uterus(a.uterus, uterus);
   name_abdomen(a.abdomen, abdomen, uterus);

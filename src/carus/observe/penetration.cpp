@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "carus/core/parallel.hpp"
+#include "carus/mesh/closest_point.hpp"
 #include "carus/observe/box_grid.hpp"
 
 namespace carus::observe {

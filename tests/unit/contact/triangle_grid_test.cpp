@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <random>
 
+#include "carus/mesh/closest_point.hpp"
+
 namespace carus::contact {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "carus/mesh/closest_point.hpp"
+
 namespace carus::mesh {
 namespace {
 
