@@ -32,20 +32,17 @@ struct BonyLandmarks {
 
 /// Finds the landmarks on the bones' nodes (accuracy: the nodes' spacing) and measures the pelvis.
 ///
-///     median plane      halfway between the innominate bones' centroids, across the line that joins them
-///     symphysis         where the innominate bones come closest in front: the midpoints of their facing nodes; its top
-///                       is the one nearest to the promontory (that makes the obstetric conjugate), its bottom the one
-///                       farthest down along the joint
-///     promontory        of the sacrum's nodes within 10 mm of the median plane and in its upper third, the foremost
-///     frame             origin halfway between promontory and top of the symphysis, y along that line, x to the right
-///     spines            on each side, of the ischium's nodes 50 to 95 mm below the inlet (within 30 mm of its centre
-///     in y),
-///                       the one farthest inward, a third as much backward and downward
-///     tuberosities      on each side, of the ischium's nodes within 12 mm of its lowest in height and in y, the
-///     innermost coccyx tip        the coccyx' node farthest from the sacrum sacrum tip        the sacrum's node
-///     nearest to the coccyx hinge             on the sacrum's front in the median plane, at 0.55 of the way from
-///     promontory to tip, as in the
-///                       generated pelvis
+/// - median plane: halfway between the innominate bones' centroids, across the line that joins them;
+/// - symphysis: where the innominate bones come closest in front, the midpoints of their facing nodes; its top is the
+///   one nearest to the promontory (that makes the obstetric conjugate), its bottom the one farthest down the joint;
+/// - promontory: of the sacrum's nodes within 10 mm of the median plane and in its upper third, the foremost;
+/// - frame: origin halfway between promontory and top of the symphysis, y along that line, x to the right;
+/// - spines: on each side, of the ischium's nodes 50 to 95 mm below the inlet and within 30 mm of its centre in y, the
+///   one farthest inward, a third as much backward and downward;
+/// - tuberosities: on each side, of the ischium's nodes within 12 mm of its lowest in height and in y, the innermost;
+/// - coccyx' tip: its node farthest from the sacrum; sacrum's tip: its node nearest to the coccyx;
+/// - hinge of the coccyx: on the sacrum's front in the median plane, 0.55 of the way from promontory to tip, as in the
+///   generated pelvis.
 ///
 /// Throws InputError, saying which landmark is nowhere and why, if the bones are not those of one upright pelvis.
 BonyLandmarks find_landmarks(const PelvicBones& bones);

@@ -9,6 +9,7 @@
 #include <functional>
 #include <limits>
 
+#include "carus/anatomy/bony_landmarks.hpp"
 #include "carus/core/error.hpp"
 #include "carus/mesh/closest_point.hpp"
 
@@ -124,7 +125,31 @@ double half_arch(const Surface& bone, const Vec3& S, const Vec3& ramus, double s
   return std::atan(line[0]);
 }
 
-void measure_pelvis(Anatomy& a) {
+/// Points on the facets of a surface, no further apart than `spacing`, for what looks at nodes alone.
+std::vector<Vec3> points_on(const Surface& s, double spacing) {
+  std::vector<Vec3> points;
+  for (const auto& t : s.t) {
+    const Vec3 &a = s.x[t[0]], ab = s.x[t[1]] - a, ac = s.x[t[2]] - a;
+    const int n = std::max(1, int(std::ceil(std::max({ab.norm(), ac.norm(), (ab - ac).norm()}) / spacing)));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) points.emplace_back(a + (i * ab + j * ac) / n);
+  }
+  return points;
+}
+
+/// What the innominate bones and the promontory decide, in given bones, by the same landmarks as in the volume that
+/// they came from: only meshing can have changed it.
+void measure_given_ring(Anatomy& a) {
+  constexpr double spacing = 0.002;
+  const auto points = [&](Label label) { return mesh::Surface{points_on(surface_of(a.abdomen, label), spacing), {}}; };
+  const auto found =
+      find_landmarks({points(innominate_right), points(innominate_left), points(sacrum), points(coccyx)});
+  for (const char* key :
+       {"obstetric_conjugate", "transverse_inlet", "interspinous", "intertuberous", "pubic_arch_angle"})
+    a.measured[key] = found.measures.at(key);
+}
+
+void measure_bones(Anatomy& a) {
   const auto right = surface_of(a.abdomen, innominate_right), left = surface_of(a.abdomen, innominate_left);
   const auto upper = surface_of(a.abdomen, sacrum), lower = surface_of(a.abdomen, coccyx);
   const auto& l = a.landmarks;
@@ -164,7 +189,9 @@ void measure_pelvis(Anatomy& a) {
   const auto face = midline(lower, l.at("sacrum_tip") + 0.3 * along - 0.01 * into,
                             l.at("sacrum_tip") + 0.85 * along - 0.01 * into, into);
   m["sacrococcygeal_angle"] = angle(promontory - tip, face.back() - face.front());
+}
 
+void measure_pelvis(Anatomy& a) {
   const auto& p = a.parameters.pelvis;
   a.requested.insert({{"obstetric_conjugate", p.obstetric_conjugate},
                       {"transverse_inlet", p.transverse_inlet},
@@ -174,6 +201,8 @@ void measure_pelvis(Anatomy& a) {
                       {"pubic_arch_angle", p.pubic_arch_angle},
                       {"sacral_height", p.sacral_height},
                       {"sacrococcygeal_angle", p.sacrococcygeal_angle}});
+  measure_bones(a);
+  if (a.parameters.bones) measure_given_ring(a);
 }
 
 void measure_fetus(Anatomy& a) {

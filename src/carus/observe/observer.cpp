@@ -324,10 +324,25 @@ struct Observer::Impl {
       add("penetration_" + pairs[i].a + "_" + pairs[i].b + "_mm",
           [i](const Moment& m) { return per_mm * std::max(0.0, -m.gaps[i].least_smooth_gap); });
     }
-    add("min_J_ratio", [](const Moment& m) { return *std::min_element(m.strain.J.begin(), m.strain.J.end()); });
-    add("inverted_count", [](const Moment& m) {
-      return double(std::count_if(m.strain.J.begin(), m.strain.J.end(), [](double J) { return !(J > 0); }));
+    add("min_J_ratio", [this](const Moment& m) {
+      double least = 1;
+      for_each_deformable([&](std::int32_t e) { least = std::min(least, m.strain.J[e]); });
+      return least;
     });
+    add("inverted_count", [this](const Moment& m) {
+      int count = 0;
+      for_each_deformable([&](std::int32_t e) { count += !(m.strain.J[e] > 0); });
+      return double(count);
+    });
+  }
+
+  /// Elements that carry stress. Those of a rigid body are its picture: where it hinges on another, they overlap.
+  template <class F>
+  void for_each_deformable(F&& f) const {
+    for (std::size_t r = 0; r < region_tets.size(); ++r) {
+      if (model.regions[r].rigid) continue;
+      for (const auto e : region_tets[r]) f(e);
+    }
   }
 
   [[nodiscard]] Moment moment(const fem::State& state, const solve::Observables& seen, const Values* previous) const {
