@@ -74,10 +74,16 @@ struct GivenBones {
   std::map<std::string, Vec3> landmarks;           ///< by the names of Pelvis::landmarks(), without the vulva's
 };
 /// Where given bones are read from; all else about them follows from it.
+/// A landmark that the user has seen, in the RAS frame of the volume.
+struct GivenLandmark {
+  std::string name;
+  double right = 0, anterior = 0, superior = 0;  ///< [m]
+};
 struct BoneSource {
   std::string file;  ///< a label volume; empty: bones are generated
   int right = 2, left = 1, sacrum = 3, coccyx = 4;
-  bool fit_canal = true;  ///< bend_radius and bend_start follow from where the symphysis is
+  std::vector<GivenLandmark> landmarks;  ///< take the place of those found
+  bool fit_canal = true;                 ///< bend_radius and bend_start follow from where the symphysis is
 };
 struct MeshSize {
   double fetus, uterus, abdomen_inner, abdomen_outer, bone;  ///< facet edge [m]

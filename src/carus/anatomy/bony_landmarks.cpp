@@ -101,7 +101,7 @@ struct Median {
 };
 
 /// The landmarks of the median plane that the frame hangs on, in RAS.
-Median median_landmarks(const PelvicBones& b) {
+Median median_landmarks(const PelvicBones& b, const SeenLandmarks& seen) {
   const Vec3 right = mean(b.right.nodes), left = mean(b.left.nodes), across = (right - left).normalized();
   const Vec3 median = (right + left) / 2;
   if (across.x() < 0.9)
@@ -110,16 +110,26 @@ Median median_landmarks(const PelvicBones& b) {
                     "{:.2f}, {:.2f} in "
                     "RAS); are the labels, or the frame's letters, exchanged?",
                     across.x(), across.y(), across.z()));
+  const auto seen_or = [&](const char* name, const auto& find) {
+    const auto it = seen.find(name);
+    return it == seen.end() ? find() : it->second;
+  };
   const auto joint = symphysis_of(b, median, across);
   const auto box = mesh::box(b.sacrum);
   const double upper = box.max().z() - box.sizes().z() / 3;
   Median m;
-  m.promontory = best(
-      where(b.sacrum.nodes, [&](const Vec3& x) { return x.z() > upper && std::abs((x - median).dot(across)) < 0.010; }),
-      "promontory", [](const Vec3& x) { return x.y(); });
-  m.top = best(joint, "top of the symphysis", [&](const Vec3& x) { return -(x - m.promontory).norm(); });
+  m.promontory = seen_or("promontory", [&] {
+    return best(where(b.sacrum.nodes,
+                      [&](const Vec3& x) { return x.z() > upper && std::abs((x - median).dot(across)) < 0.010; }),
+                "promontory", [](const Vec3& x) { return x.y(); });
+  });
+  m.top = seen_or("symphysis_top", [&] {
+    return best(joint, "top of the symphysis", [&](const Vec3& x) { return -(x - m.promontory).norm(); });
+  });
   const Vec3 down = long_axis(joint, -Vec3::UnitZ());
-  m.bottom = best(joint, "bottom of the symphysis", [&](const Vec3& x) { return x.dot(down); });
+  m.bottom = seen_or("symphysis_bottom", [&] {
+    return best(joint, "bottom of the symphysis", [&](const Vec3& x) { return x.dot(down); });
+  });
   m.symphysis_height = (m.bottom - best(joint, "symphysis", [&](const Vec3& x) { return -x.dot(down); })).dot(down);
   // The conjugates lie in the median plane, the sacrum's nodes only near it.
   m.promontory -= (m.promontory - median).dot(across) * across;
@@ -146,8 +156,8 @@ Nodes in_frame(const Nodes& nodes, const PelvicFrame& f) {
 
 class Finder {
  public:
-  explicit Finder(const PelvicBones& b) {
-    const auto m = median_landmarks(b);
+  Finder(const PelvicBones& b, const SeenLandmarks& seen) : seen_(seen) {
+    const auto m = median_landmarks(b, seen);
     l_.frame = frame_of(m, b);
     sides_ = {in_frame(b.right.nodes, l_.frame), in_frame(b.left.nodes, l_.frame)};
     sacrum_ = in_frame(b.sacrum.nodes, l_.frame), coccyx_ = in_frame(b.coccyx.nodes, l_.frame);
@@ -167,37 +177,52 @@ class Finder {
   }
 
  private:
+  template <class Find>
+  [[nodiscard]] Vec3 seen_or(const std::string& name, Find&& find) const {
+    const auto it = seen_.find(name);
+    return it == seen_.end() ? Vec3(find()) : l_.frame.to_pelvis(it->second);
+  }
+
   void innominate(int side) {
     const std::string name = side == 0 ? "right" : "left";
     const double sign = side == 0 ? 1 : -1;
     const auto inward = [&](const Vec3& x) { return -sign * x.x(); };
     const auto& nodes = sides_[side];
     auto& p = l_.points;
-    p["spine_" + name] =
-        best(where(nodes, [](const Vec3& x) { return x.z() > -0.095 && x.z() < -0.050 && std::abs(x.y()) < 0.030; }),
-             "ischial spine, " + name, [&](const Vec3& x) { return 3 * inward(x) - x.y() - x.z(); });
-    const auto front = where(nodes, [](const Vec3& x) { return x.y() > 0; });
-    const Vec3 low = best(front, "tuberosity, " + name, [](const Vec3& x) { return -x.z(); });
-    const auto tuber =
-        where(front, [&](const Vec3& x) { return x.z() < low.z() + 0.012 && std::abs(x.y() - low.y()) < 0.012; });
-    p["tuber_" + name] = best(tuber, "tuberosity", inward);
+    p["spine_" + name] = seen_or("spine_" + name, [&] {
+      return best(
+          where(nodes, [](const Vec3& x) { return x.z() > -0.095 && x.z() < -0.050 && std::abs(x.y()) < 0.030; }),
+          "ischial spine, " + name, [&](const Vec3& x) { return 3 * inward(x) - x.y() - x.z(); });
+    });
+    p["tuber_" + name] = seen_or("tuber_" + name, [&] {
+      const auto front = where(nodes, [](const Vec3& x) { return x.y() > 0; });
+      const Vec3 low = best(front, "tuberosity, " + name, [](const Vec3& x) { return -x.z(); });
+      const auto tuber =
+          where(front, [&](const Vec3& x) { return x.z() < low.z() + 0.012 && std::abs(x.y() - low.y()) < 0.012; });
+      return best(tuber, "tuberosity", inward);
+    });
     // The ramus' inner edge, half way from symphysis to tuberosity.
     const Vec3 S = p.at("symphysis_bottom"), T = p.at("tuber_" + name);
     const double half = (S.z() + T.z()) / 2;
-    p["ramus_" + name] =
-        best(where(nodes, [&](const Vec3& x) { return std::abs(x.z() - half) < 0.004 && x.y() > T.y(); }),
-             "inferior ramus, " + name, inward);
+    p["ramus_" + name] = seen_or("ramus_" + name, [&] {
+      return best(where(nodes, [&](const Vec3& x) { return std::abs(x.z() - half) < 0.004 && x.y() > T.y(); }),
+                  "inferior ramus, " + name, inward);
+    });
   }
 
   void back() {
     auto& p = l_.points;
-    const Nearest of_coccyx(coccyx_);
-    Vec3 tip = sacrum_.front();
-    double least = far;
-    for (const auto& x : sacrum_)
-      if (const double d = (of_coccyx.to(x) - x).norm(); d < least) least = d, tip = x;
-    p["sacrum_tip"] = tip;
-    p["coccyx_tip"] = best(coccyx_, "tip of the coccyx", [&](const Vec3& x) { return (x - tip).norm(); });
+    const Vec3 tip = p["sacrum_tip"] = seen_or("sacrum_tip", [&] {
+      const Nearest of_coccyx(coccyx_);
+      Vec3 nearest = sacrum_.front();
+      double least = far;
+      for (const auto& x : sacrum_)
+        if (const double d = (of_coccyx.to(x) - x).norm(); d < least) least = d, nearest = x;
+      return nearest;
+    });
+    p["coccyx_tip"] = seen_or("coccyx_tip", [&] {
+      return best(coccyx_, "tip of the coccyx", [&](const Vec3& x) { return (x - tip).norm(); });
+    });
     const Vec3 P = p.at("promontory"), along = tip - P;
     // Front of the sacrum near the median plane, as a function of the way from promontory to tip.
     const auto front_at = [&](double part) {
@@ -207,7 +232,7 @@ class Finder {
       });
       return best(slice, "front of the sacrum", [](const Vec3& x) { return x.y(); });
     };
-    p["coccyx_hinge"] = front_at(0.55);
+    p["coccyx_hinge"] = seen_or("coccyx_hinge", [&] { return front_at(0.55); });
     p["coccyx_hinge"].x() = 0;
     double deepest = 0;
     for (const double t : {0.3, 0.4, 0.5, 0.6, 0.7}) {
@@ -251,6 +276,7 @@ class Finder {
     m["sacrococcygeal_angle"] = angle(p.at("promontory") - Q, p.at("coccyx_tip") - Q);
   }
 
+  const SeenLandmarks& seen_;
   BonyLandmarks l_;
   std::array<Nodes, 2> sides_;  ///< right, left, in the pelvis' frame
   Nodes sacrum_, coccyx_;
@@ -258,9 +284,9 @@ class Finder {
 
 }  // namespace
 
-BonyLandmarks find_landmarks(const PelvicBones& bones) {
+BonyLandmarks find_landmarks(const PelvicBones& bones, const SeenLandmarks& seen) {
   for (const auto* s : {&bones.right, &bones.left, &bones.sacrum, &bones.coccyx}) CARUS_ASSERT(!s->nodes.empty());
-  return Finder(bones).run();
+  return Finder(bones, seen).run();
 }
 
 PelvisParameters fitted(PelvisParameters p, const BonyLandmarks& l) {

@@ -30,6 +30,9 @@ struct BonyLandmarks {
                                            ///< [m, rad]
 };
 
+/// Landmarks that somebody has seen take the place of those found, by name, in RAS [m].
+using SeenLandmarks = std::map<std::string, Vec3>;
+
 /// Finds the landmarks on the bones' nodes (accuracy: the nodes' spacing) and measures the pelvis.
 ///
 /// - median plane: halfway between the innominate bones' centroids, across the line that joins them;
@@ -45,7 +48,8 @@ struct BonyLandmarks {
 ///   generated pelvis.
 ///
 /// Throws InputError, saying which landmark is nowhere and why, if the bones are not those of one upright pelvis.
-BonyLandmarks find_landmarks(const PelvicBones& bones);
+/// Of those seen, promontory and symphysis are taken into the median plane, as those found are.
+BonyLandmarks find_landmarks(const PelvicBones& bones, const SeenLandmarks& seen = {});
 
 /// The generated pelvis' parameters with the measures of this one in the place of averages.
 PelvisParameters fitted(PelvisParameters p, const BonyLandmarks& landmarks);

@@ -294,6 +294,12 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c,
     clearance = along > 0 ? d.norm() : std::sqrt(beside2) + 0.1 * along;
     return false;
   }
+  // Nearest of what faces the node, yet well beside it: the node lies behind something else.
+  if (along < 0 && w.minCoeff() <= 0 && beside2 > 4 * along * along) {
+    probe.impulse = 0;
+    clearance = std::sqrt(beside2) / 2;
+    return false;
+  }
   double gap = along;
   if (const Vec3 m = on_edge_of_sides(other, v, w); m.dot(d) > 0) {
     // Outside a sharp edge there is no plane, only the edge.

@@ -18,6 +18,10 @@ void bind_anatomy(Visitor& v, anatomy::Parameters& a) {
   v("pelvis.from", bones.file);
   v("pelvis.labels.innominate_right", bones.right), v("pelvis.labels.innominate_left", bones.left);
   v("pelvis.labels.sacrum", bones.sacrum), v("pelvis.labels.coccyx", bones.coccyx);
+  v.list("pelvis.landmarks", bones.landmarks, [&](const std::string& item, anatomy::GivenLandmark& l) {
+    v(item + ".name", l.name);
+    v(item + ".right", l.right), v(item + ".anterior", l.anterior), v(item + ".superior", l.superior);
+  });
   v("pelvis.fit_canal", bones.fit_canal);
   auto& p = a.pelvis;
   v("pelvis.obstetric_conjugate", p.obstetric_conjugate), v("pelvis.transverse_inlet", p.transverse_inlet);

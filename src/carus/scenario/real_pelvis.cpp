@@ -53,6 +53,33 @@ void check(const Scenario& s, const anatomy::BonyLandmarks& l) {
   if (!problems.empty()) throw InputError(problems);
 }
 
+/// Each within or near the volume, and once: a slip of sign or unit is told, not built upon.
+anatomy::SeenLandmarks seen(const anatomy::BoneSource& source, const imaging::LabelVolume& v) {
+  constexpr double beside = 0.02;  // [m]
+  Eigen::AlignedBox3d box;
+  for (int corner = 0; corner < 8; ++corner)
+    box.extend(v.position(
+        {double((corner & 1) * v.size[0]), double((corner >> 1 & 1) * v.size[1]), double((corner >> 2) * v.size[2])}));
+  std::vector<std::string> problems;
+  anatomy::SeenLandmarks points;
+  for (std::size_t i = 0; i < source.landmarks.size(); ++i) {
+    const auto& l = source.landmarks[i];
+    const Vec3 x(l.right, l.anterior, l.superior);
+    if (!points.emplace(l.name, x).second)
+      problems.push_back(fmt::format("pelvis.landmarks[{}].name: {} is there twice", i, l.name));
+    if (box.exteriorDistance(x) > beside) {
+      const Vec3 low = 1e3 * box.min(), high = 1e3 * box.max();
+      problems.push_back(fmt::format(
+          "pelvis.landmarks[{}]: {} at R {:.0f}, A {:.0f}, S {:.0f} mm lies outside {}, which reaches from {:.0f}, "
+          "{:.0f}, {:.0f} to {:.0f}, {:.0f}, {:.0f} mm; are its coordinates RAS, not LPS?",
+          i, l.name, 1e3 * x.x(), 1e3 * x.y(), 1e3 * x.z(), source.file, low.x(), low.y(), low.z(), high.x(), high.y(),
+          high.z()));
+    }
+  }
+  if (!problems.empty()) throw InputError(problems);
+  return points;
+}
+
 }  // namespace
 
 RealPelvis read_real_pelvis(const anatomy::BoneSource& source) {
@@ -67,8 +94,8 @@ RealPelvis read_real_pelvis(const anatomy::BoneSource& source) {
     return imaging::extract_surface(v, label, {.smoothing = smoothing, .spacing = 0.0015}, source.file).surface;
   };
   RealPelvis r;
-  r.landmarks =
-      anatomy::find_landmarks({bone(source.right), bone(source.left), bone(source.sacrum), bone(source.coccyx)});
+  r.landmarks = anatomy::find_landmarks(
+      {bone(source.right), bone(source.left), bone(source.sacrum), bone(source.coccyx)}, seen(source, v));
   r.bones = solid(v, source, r.landmarks);
   return r;
 }

@@ -60,6 +60,26 @@ TEST(BonyLandmarks, OfAGeneratedPelvisAreWhereItWasGivenThem) {
   EXPECT_LT((found.frame.rotation * stood.linear() - Mat3::Identity()).norm(), 0.14);
 }
 
+TEST(BonyLandmarks, ThoseSeenTakeThePlaceOfThoseFound) {
+  const anatomy::Pelvis pelvis({}, {});
+  Eigen::Affine3d stood = Eigen::Affine3d::Identity();
+  stood.translate(Vec3(0.01, -0.05, 0.2)).rotate(Eigen::AngleAxisd(lean, Vec3::UnitX()));
+  const auto bones = upright_bones(pelvis, stood);
+  const auto found = anatomy::find_landmarks(bones);
+  const Vec3 right = found.frame.to_ras(found.points.at("spine_right") + Vec3(-0.004, 0, 0));
+  const Vec3 promontory = found.frame.to_ras(found.points.at("promontory") + Vec3(0, -0.003, 0));
+  const auto seen = anatomy::find_landmarks(bones, {{"spine_right", right}, {"promontory", promontory}});
+  EXPECT_LT((seen.frame.to_ras(seen.points.at("spine_right")) - right).norm(), 1e-12);
+  EXPECT_NEAR(seen.measures.at("interspinous"), found.measures.at("interspinous") - 0.004, 1e-4);
+  // 3 mm further back along the conjugate: it and the frame follow.
+  EXPECT_NEAR(seen.measures.at("obstetric_conjugate"), found.measures.at("obstetric_conjugate") + 0.003, 1e-6);
+  EXPECT_NEAR((seen.frame.origin - found.frame.origin).norm(), 0.0015, 1e-6);
+  // What was not given is where it was.
+  EXPECT_LT(
+      (seen.frame.to_ras(seen.points.at("coccyx_tip")) - found.frame.to_ras(found.points.at("coccyx_tip"))).norm(),
+      1e-9);
+}
+
 TEST(BonyLandmarks, ExchangedSidesAreRefused) {
   const anatomy::Pelvis pelvis({}, {});
   Eigen::Affine3d stood = Eigen::Affine3d::Identity();
