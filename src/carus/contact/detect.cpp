@@ -294,8 +294,8 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c,
     clearance = along > 0 ? d.norm() : std::sqrt(beside2) + 0.1 * along;
     return false;
   }
-  // Nearest of what faces the node, yet 1 mm and more beside it: the node lies behind something else.
-  if (along < 0 && w.minCoeff() <= 0 && beside2 > 1e-6 + 4 * along * along) {
+  // Nearest of what faces the node, yet 5 mm and more beside it: the node lies behind something else.
+  if (along < 0 && w.minCoeff() <= 0 && beside2 > 2.5e-5 + 4 * along * along) {
     probe.impulse = 0;
     clearance = std::sqrt(beside2) / 2;
     return false;
