@@ -50,10 +50,10 @@ struct HingeBody {
 };
 
 struct Options {
-  double activation = 1e-4;      ///< [m] a pair enters the solve when its gap is less than that and what may close it
-  double reach = 0.010;          ///< [m] distance up to which pairs are looked for at a renewal
-  double correction_speed = 1;   ///< [m/s] at most, outward, where penetrated
-  double max_depth = 0.004;      ///< [m] a node deeper than this belongs elsewhere (the other side of a thin wall)
+  double activation = 1e-4;     ///< [m] a pair enters the solve when its gap is less than that and what may close it
+  double reach = 0.010;         ///< [m] distance up to which pairs are looked for at a renewal
+  double correction_speed = 1;  ///< [m/s] at most, outward, where penetrated
+  double max_depth = 0.004;  ///< [m] a node behind a facet and farther from it belongs elsewhere (a wall's other side)
   double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch its own other side
   double fold_depth = 3e-4;      ///< [m] < max_depth; nearer to itself than that, what lies deeper is a ridge, no fold
   double sagitta_limit = 1e-3;   ///< [m]

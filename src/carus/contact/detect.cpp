@@ -294,10 +294,11 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c,
     clearance = along > 0 ? d.norm() : std::sqrt(beside2) + 0.1 * along;
     return false;
   }
-  // Nearest of what faces the node, yet 5 mm and more beside it: the node lies behind something else.
-  if (along < 0 && w.minCoeff() <= 0 && beside2 > 2.5e-5 + 4 * along * along) {
+  // Depth is a distance: a node a little below a facet's plane but far beside it has gone through something else, whose
+  // facets do not face it, or through nothing.
+  if (along < 0 && nearest.squared > options_.max_depth * options_.max_depth) {
     probe.impulse = 0;
-    clearance = std::sqrt(beside2) / 2;
+    clearance = std::sqrt(nearest.squared) - options_.max_depth;
     return false;
   }
   double gap = along;

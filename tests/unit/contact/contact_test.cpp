@@ -211,6 +211,25 @@ TEST(Contact, OpenEdgeEndsTheSurface) {
   EXPECT_TRUE(contact.constraints().empty());
 }
 
+/// A plate beside a ball, turned away from the side of the ball that is next to it: what faces it is the top, whose
+/// planes it lies 3 mm below, yet 11 mm from them.
+TEST(Contact, WhatLiesFarBesideAFacetHasNotGoneThroughIt) {
+  constexpr double r = 0.005;
+  auto mesh = shapes::ball(Vec3::Zero(), r, 10, 0);
+  const auto ball = mesh::boundary(mesh);
+  const Vec3 normal = Vec3(1, 0, -0.2).normalized(), up = Vec3(0.2, 0, 1).normalized(), centre(2.2 * r, 0, 0);
+  const auto first = std::int32_t(mesh.nodes.size());
+  for (const Vec3& offset : {Vec3(-Vec3::UnitY()), Vec3(Vec3::UnitY()), up})
+    mesh.nodes.push_back(centre + 1e-3 * offset);
+  mesh::Triangle plate{first, first + 1, first + 2};
+  if ((2e-3 * Vec3::UnitY()).cross(1e-3 * (up + Vec3::UnitY())).dot(normal) < 0) std::swap(plate[0], plate[1]);
+  Options options;
+  options.reach = 0.02;
+  auto contact = make({mesh, {{"ball", ball, mesh.nodes}, {"plate", {plate}, mesh.nodes}}}, 1e-3, 0, options);
+  contact.detect(mesh.nodes, 1e-5, 0);
+  EXPECT_TRUE(contact.constraints().empty());
+}
+
 /// The edges of whole boxes are no curvature: their faces are flat up to the rim.
 TEST(Contact, SharpEdgesKeepTheirSides) {
   for (const double distance : {5e-5, -3e-5}) {
