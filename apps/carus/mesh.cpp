@@ -165,12 +165,9 @@ int precision(const PrecisionArguments& a) {
   std::string csv = csv_head;
   auto list = organs(a.source);
   std::vector<Measured> measured(list.size());
-  // Collapsing edges is the work of one thread: organs side by side.
+  // Collapsing edges is the work of one thread: organs side by side, each a task of its own, for they differ in size.
   tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, list.size(), 1),
-      [&](const auto& range) {
-        for (auto i = range.begin(); i < range.end(); ++i) measured[i] = measure(list[i], a, list.size() > 1);
-      },
+      std::size_t(0), list.size(), [&](std::size_t i) { measured[i] = measure(list[i], a, list.size() > 1); },
       tbb::simple_partitioner());
   for (const auto& m : measured) fmt::print("{}", m.told), csv += m.csv;
   write_atomically(a.out, csv);

@@ -93,6 +93,19 @@ TEST(MeshCommand, SurfaceIsSimplifiedAsAskedAndBadInputRefused) {
   EXPECT_THAT(text(log), testing::HasSubstr("label 9 does not occur; there are 1, 2"));
 }
 
+TEST(RealPelvis, LandmarksBesideTheVolumeAreRefused) {
+  const std::string scenario = std::string(CARUS_SOURCE_DIR) + "/scenarios/real_pelvis.yaml";
+  const fs::path log = fresh("landmarks.log");
+  EXPECT_EQ(wait_for(start({"check", scenario, "--set", "pelvis.from=" + phantom().string(), "--set",
+                            "pelvis.landmarks=[{name: coccyx_tip, right: 2 mm, anterior: -31 mm, superior: 314 mm}]"},
+                           log)),
+            2);
+  EXPECT_THAT(text(log), testing::HasSubstr("pelvis.landmarks[0]: coccyx_tip at R 2, A -31, S 314 mm lies outside " +
+                                            phantom().string() +
+                                            ", which reaches from -25, -25, -25 to 45, 25, 26 mm; are its coordinates "
+                                            "RAS, not LPS?"));
+}
+
 TEST(RealPelvis, IsRefusedWithoutItsFileAndCheckedWithIt) {
   const std::string scenario = std::string(CARUS_SOURCE_DIR) + "/scenarios/real_pelvis.yaml";
   const fs::path log = fresh("real.log");

@@ -27,6 +27,13 @@ Nodes where(const Nodes& nodes, const std::function<bool(const Vec3&)>& keep) {
   return kept;
 }
 
+/// Where a landmark was seen, or else what `find` finds.
+template <class Find>
+Vec3 seen_or_found(const SeenLandmarks& seen, const std::string& name, const Find& find) {
+  const auto it = seen.find(name);
+  return it == seen.end() ? Vec3(find()) : it->second;
+}
+
 /// The node that scores highest; what: for the message if there is none.
 Vec3 best(const Nodes& nodes, const std::string& what, const std::function<double(const Vec3&)>& score) {
   if (nodes.empty())
@@ -110,24 +117,20 @@ Median median_landmarks(const PelvicBones& b, const SeenLandmarks& seen) {
                     "{:.2f}, {:.2f} in "
                     "RAS); are the labels, or the frame's letters, exchanged?",
                     across.x(), across.y(), across.z()));
-  const auto seen_or = [&](const char* name, const auto& find) {
-    const auto it = seen.find(name);
-    return it == seen.end() ? find() : it->second;
-  };
   const auto joint = symphysis_of(b, median, across);
   const auto box = mesh::box(b.sacrum);
   const double upper = box.max().z() - box.sizes().z() / 3;
   Median m;
-  m.promontory = seen_or("promontory", [&] {
+  m.promontory = seen_or_found(seen, "promontory", [&] {
     return best(where(b.sacrum.nodes,
                       [&](const Vec3& x) { return x.z() > upper && std::abs((x - median).dot(across)) < 0.010; }),
                 "promontory", [](const Vec3& x) { return x.y(); });
   });
-  m.top = seen_or("symphysis_top", [&] {
+  m.top = seen_or_found(seen, "symphysis_top", [&] {
     return best(joint, "top of the symphysis", [&](const Vec3& x) { return -(x - m.promontory).norm(); });
   });
   const Vec3 down = long_axis(joint, -Vec3::UnitZ());
-  m.bottom = seen_or("symphysis_bottom", [&] {
+  m.bottom = seen_or_found(seen, "symphysis_bottom", [&] {
     return best(joint, "bottom of the symphysis", [&](const Vec3& x) { return x.dot(down); });
   });
   m.symphysis_height = (m.bottom - best(joint, "symphysis", [&](const Vec3& x) { return -x.dot(down); })).dot(down);
@@ -159,6 +162,7 @@ class Finder {
   Finder(const PelvicBones& b, const SeenLandmarks& seen) : seen_(seen) {
     const auto m = median_landmarks(b, seen);
     l_.frame = frame_of(m, b);
+    for (auto& [name, x] : seen_) x = l_.frame.to_pelvis(x);
     sides_ = {in_frame(b.right.nodes, l_.frame), in_frame(b.left.nodes, l_.frame)};
     sacrum_ = in_frame(b.sacrum.nodes, l_.frame), coccyx_ = in_frame(b.coccyx.nodes, l_.frame);
     auto& p = l_.points;
@@ -177,24 +181,18 @@ class Finder {
   }
 
  private:
-  template <class Find>
-  [[nodiscard]] Vec3 seen_or(const std::string& name, Find&& find) const {
-    const auto it = seen_.find(name);
-    return it == seen_.end() ? Vec3(find()) : l_.frame.to_pelvis(it->second);
-  }
-
   void innominate(int side) {
     const std::string name = side == 0 ? "right" : "left";
     const double sign = side == 0 ? 1 : -1;
     const auto inward = [&](const Vec3& x) { return -sign * x.x(); };
     const auto& nodes = sides_[side];
     auto& p = l_.points;
-    p["spine_" + name] = seen_or("spine_" + name, [&] {
+    p["spine_" + name] = seen_or_found(seen_, "spine_" + name, [&] {
       return best(
           where(nodes, [](const Vec3& x) { return x.z() > -0.095 && x.z() < -0.050 && std::abs(x.y()) < 0.030; }),
           "ischial spine, " + name, [&](const Vec3& x) { return 3 * inward(x) - x.y() - x.z(); });
     });
-    p["tuber_" + name] = seen_or("tuber_" + name, [&] {
+    p["tuber_" + name] = seen_or_found(seen_, "tuber_" + name, [&] {
       const auto front = where(nodes, [](const Vec3& x) { return x.y() > 0; });
       const Vec3 low = best(front, "tuberosity, " + name, [](const Vec3& x) { return -x.z(); });
       const auto tuber =
@@ -204,7 +202,7 @@ class Finder {
     // The ramus' inner edge, half way from symphysis to tuberosity.
     const Vec3 S = p.at("symphysis_bottom"), T = p.at("tuber_" + name);
     const double half = (S.z() + T.z()) / 2;
-    p["ramus_" + name] = seen_or("ramus_" + name, [&] {
+    p["ramus_" + name] = seen_or_found(seen_, "ramus_" + name, [&] {
       return best(where(nodes, [&](const Vec3& x) { return std::abs(x.z() - half) < 0.004 && x.y() > T.y(); }),
                   "inferior ramus, " + name, inward);
     });
@@ -212,7 +210,7 @@ class Finder {
 
   void back() {
     auto& p = l_.points;
-    const Vec3 tip = p["sacrum_tip"] = seen_or("sacrum_tip", [&] {
+    const Vec3 tip = p["sacrum_tip"] = seen_or_found(seen_, "sacrum_tip", [&] {
       const Nearest of_coccyx(coccyx_);
       Vec3 nearest = sacrum_.front();
       double least = far;
@@ -220,7 +218,7 @@ class Finder {
         if (const double d = (of_coccyx.to(x) - x).norm(); d < least) least = d, nearest = x;
       return nearest;
     });
-    p["coccyx_tip"] = seen_or("coccyx_tip", [&] {
+    p["coccyx_tip"] = seen_or_found(seen_, "coccyx_tip", [&] {
       return best(coccyx_, "tip of the coccyx", [&](const Vec3& x) { return (x - tip).norm(); });
     });
     const Vec3 P = p.at("promontory"), along = tip - P;
@@ -232,7 +230,7 @@ class Finder {
       });
       return best(slice, "front of the sacrum", [](const Vec3& x) { return x.y(); });
     };
-    p["coccyx_hinge"] = seen_or("coccyx_hinge", [&] { return front_at(0.55); });
+    p["coccyx_hinge"] = seen_or_found(seen_, "coccyx_hinge", [&] { return front_at(0.55); });
     p["coccyx_hinge"].x() = 0;
     double deepest = 0;
     for (const double t : {0.3, 0.4, 0.5, 0.6, 0.7}) {
@@ -276,7 +274,7 @@ class Finder {
     m["sacrococcygeal_angle"] = angle(p.at("promontory") - Q, p.at("coccyx_tip") - Q);
   }
 
-  const SeenLandmarks& seen_;
+  SeenLandmarks seen_;  ///< in the pelvis' frame
   BonyLandmarks l_;
   std::array<Nodes, 2> sides_;  ///< right, left, in the pelvis' frame
   Nodes sacrum_, coccyx_;

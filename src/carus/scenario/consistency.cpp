@@ -88,6 +88,17 @@ class Check {
     }
   }
 
+  void landmarks() {
+    const auto& from = s_.anatomy.bones_from;
+    if (from.file.empty() && !from.landmarks.empty())
+      refuse("pelvis.landmarks", fmt::format("a list of {}", from.landmarks.size()), "an empty list",
+             "without pelvis.from there is no volume in which they could have been seen");
+    for (auto l = from.landmarks.begin(); l != from.landmarks.end(); ++l)
+      if (std::any_of(from.landmarks.begin(), l, [&](const auto& other) { return other.name == l->name; }))
+        refuse(fmt::format("pelvis.landmarks[{}].name", l - from.landmarks.begin()), "\"" + l->name + "\"",
+               "each name once", "one of the two must go");
+  }
+
   void solver() {
     if (s_.implicit.least_time_step > s_.implicit.time_step)
       refuse("solver.implicit.least_time_step", seconds(s_.implicit.least_time_step),
@@ -120,6 +131,7 @@ Problems inconsistencies(const Scenario& s, const Settings& settings) {
   check.canal();
   for (const auto& [region, material] : s.materials) check.material(region, material);
   check.calibrated();
+  check.landmarks();
   check.solver();
   return std::move(check.problems);
 }

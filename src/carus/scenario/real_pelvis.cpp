@@ -53,7 +53,7 @@ void check(const Scenario& s, const anatomy::BonyLandmarks& l) {
   if (!problems.empty()) throw InputError(problems);
 }
 
-/// Each within or near the volume, and once: a slip of sign or unit is told, not built upon.
+/// Each within or near the volume: a slip of sign or unit is told, not built upon.
 anatomy::SeenLandmarks seen(const anatomy::BoneSource& source, const imaging::LabelVolume& v) {
   constexpr double beside = 0.02;  // [m]
   Eigen::AlignedBox3d box;
@@ -65,8 +65,7 @@ anatomy::SeenLandmarks seen(const anatomy::BoneSource& source, const imaging::La
   for (std::size_t i = 0; i < source.landmarks.size(); ++i) {
     const auto& l = source.landmarks[i];
     const Vec3 x(l.right, l.anterior, l.superior);
-    if (!points.emplace(l.name, x).second)
-      problems.push_back(fmt::format("pelvis.landmarks[{}].name: {} is there twice", i, l.name));
+    points[l.name] = x;
     if (box.exteriorDistance(x) > beside) {
       const Vec3 low = 1e3 * box.min(), high = 1e3 * box.max();
       problems.push_back(fmt::format(
@@ -90,12 +89,13 @@ RealPelvis read_real_pelvis(const anatomy::BoneSource& source) {
                     "put one there, or name another with --set pelvis.from=FILE and its labels with pelvis.labels",
                     source.file));
   const auto v = imaging::read_labels(source.file).volume;
+  const auto landmarks = seen(source, v);
   const auto bone = [&](int label) {
     return imaging::extract_surface(v, label, {.smoothing = smoothing, .spacing = 0.0015}, source.file).surface;
   };
   RealPelvis r;
   r.landmarks = anatomy::find_landmarks(
-      {bone(source.right), bone(source.left), bone(source.sacrum), bone(source.coccyx)}, seen(source, v));
+      {bone(source.right), bone(source.left), bone(source.sacrum), bone(source.coccyx)}, landmarks);
   r.bones = solid(v, source, r.landmarks);
   return r;
 }
