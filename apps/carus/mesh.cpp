@@ -43,7 +43,7 @@ mesh::Surface simplified(const Organ& organ, const SurfaceArguments& a) {
   if (n > organ.surface.nodes.size())
     throw InputError(fmt::format("--nodes {}; {} has {}: draw its surface finer with --spacing", n, organ.name,
                                  organ.surface.nodes.size()));
-  return meshing::simplify(organ.surface, {n}).front();
+  return meshing::simplify_soundly(organ.surface, n);
 #else
   needs_meshing();
 #endif

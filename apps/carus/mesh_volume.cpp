@@ -23,7 +23,7 @@ namespace {
 struct VolumeArguments {
   OrganOptions source;
   std::vector<std::string> out, size_of;
-  std::string size = "8 mm";
+  std::string size = "8 mm", feature_angle;
 };
 
 #ifdef CARUS_WITH_MESHING
@@ -33,7 +33,8 @@ struct Solid {
   meshing::LabelFunction label;
   Vec3 low, high;
   std::map<std::int32_t, std::string> names;
-  std::map<std::int32_t, double> volumes;  ///< [m^3]
+  std::map<std::int32_t, double> volumes;          ///< [m^3]
+  std::map<std::int32_t, mesh::Surface> surfaces;  ///< of organs that come as surfaces
 };
 
 Solid from_labels(const OrganOptions& o) {
@@ -51,7 +52,7 @@ Solid from_labels(const OrganOptions& o) {
     for (const auto& [l, n] : counts) labels.push_back(l);
   if (labels.empty()) throw InputError(fmt::format("{}: every voxel is 0: no label in it", o.labels));
   const auto smooth = std::make_shared<imaging::SmoothLabels>(file.volume, labels, o.smoothing, o.labels);
-  Solid s{[smooth](const Vec3& x) { return smooth->label(x); }, smooth->box().low, smooth->box().high, {}, {}};
+  Solid s{[smooth](const Vec3& x) { return smooth->label(x); }, smooth->box().low, smooth->box().high, {}, {}, {}};
   for (const auto l : labels) s.volumes[l] = double(counts.at(l)) * file.volume.voxel_volume();
   return s;
 }
@@ -59,14 +60,14 @@ Solid from_labels(const OrganOptions& o) {
 /// Where two surfaces overlap the one given first has it.
 Solid from_surfaces(const OrganOptions& o) {
   auto solids = std::make_shared<std::vector<meshing::ClosedSolid>>();
-  Solid s{{}, Vec3::Constant(1e9), Vec3::Constant(-1e9), {}, {}};
+  Solid s{{}, Vec3::Constant(1e9), Vec3::Constant(-1e9), {}, {}, {}};
   std::int32_t label = 0;
   for (const auto& organ : organs(o)) {
     meshing::require_no_self_intersection(organ.surface, organ.name);
     solids->emplace_back(organ.surface);
     const auto box = mesh::box(organ.surface);
     s.low = s.low.cwiseMin(box.min()), s.high = s.high.cwiseMax(box.max());
-    s.names[++label] = organ.name, s.volumes[label] = mesh::volume(organ.surface);
+    s.names[++label] = organ.name, s.volumes[label] = mesh::volume(organ.surface), s.surfaces[label] = organ.surface;
   }
   s.label = [solids](const Vec3& x) {
     for (std::size_t i = 0; i < solids->size(); ++i)
@@ -94,7 +95,23 @@ std::map<std::int32_t, double> sizes(const VolumeArguments& a, const Solid& s) {
   return h;
 }
 
-mesh::TetMesh tetrahedra(const Solid& s, const std::map<std::int32_t, double>& h) {
+/// What the mesh keeps of the surfaces' edges.
+std::vector<mesh::FeatureLine> features(const VolumeArguments& a, const Solid& s,
+                                        const std::map<std::int32_t, double>& h) {
+  if (a.feature_angle.empty()) return {};
+  if (s.surfaces.empty())
+    throw InputError("--feature-angle is of --surface: the surfaces of labels are smooth; leave it out");
+  std::vector<mesh::Featured> from;
+  for (const auto& [l, surface] : s.surfaces) from.push_back({&surface, h.at(l)});
+  auto lines = mesh::feature_lines(from, angle(a.feature_angle, "--feature-angle", 30 * units::deg, 150 * units::deg));
+  double whole = 0;
+  for (const auto& line : lines) whole += mesh::length(line);
+  fmt::print("{} feature lines, {:.1f} mm\n", lines.size(), 1e3 * whole);
+  return lines;
+}
+
+mesh::TetMesh tetrahedra(const Solid& s, const std::map<std::int32_t, double>& h,
+                         const std::vector<mesh::FeatureLine>& lines) {
   // A facet serves the finer of its two sides.
   const auto facet = [h](const Vec3&, std::int32_t a, std::int32_t b) {
     const auto at = [&](std::int32_t l) { return h.contains(l) ? h.at(l) : 1.0; };
@@ -108,8 +125,12 @@ mesh::TetMesh tetrahedra(const Solid& s, const std::map<std::int32_t, double>& h
       {.facet = facet,
        .distance = [facet](const Vec3& x, std::int32_t a, std::int32_t b) { return 0.1 * facet(x, a, b); },
        .cell = [h](const Vec3&, std::int32_t l) { return 1.3 * (h.contains(l) ? h.at(l) : 1.0); },
-       .seed_spacing = std::max(0.6 * finest, (s.high - s.low).maxCoeff() / 400)});
-  meshing::raise_altitudes(m, 0.25 * finest);
+       .seed_spacing = std::max(0.6 * finest, (s.high - s.low).maxCoeff() / 400),
+       .features = lines});
+  if (lines.empty())
+    meshing::raise_altitudes(m, 0.25 * finest);
+  else
+    meshing::raise_altitudes(m, 0.25 * finest, 0);  // lines and planes stay what they are
   return m;
 }
 
@@ -117,7 +138,8 @@ int volume(const VolumeArguments& a) {
   if (a.source.labels.empty() == a.source.surfaces.empty())
     throw InputError("give either --labels FILE or --surface FILE (again for each organ)");
   const auto solid = a.source.labels.empty() ? from_surfaces(a.source) : from_labels(a.source);
-  const auto m = tetrahedra(solid, sizes(a, solid));
+  const auto h = sizes(a, solid);
+  const auto m = tetrahedra(solid, h, features(a, solid, h));
   fmt::print("{:<20}{:>9}{:>12}{:>11}{:>10}{:>10}{:>13}{:>9}\n", "", "tets", "volume ml", "of source", "min deg",
              "max deg", "altitude mm", "aspect");
   int missing = 0;
@@ -154,11 +176,14 @@ void add_mesh_volume(CLI::App& mesh, int& status) {
   add_organ_options(*c, a->source);
   c->add_option("--size", a->size, "Length of an edge")->capture_default_str();
   c->add_option("--size-of", a->size_of, "The same for one organ: LABEL=LENGTH or NAME=LENGTH");
+  c->add_option("--feature-angle", a->feature_angle,
+                "Keep the surfaces' edges across which they turn by more than this, as \"45 deg\"; none if silent");
   c->add_option("--out", a->out, "File: .vtu, .msh, .inp or .stl, in RAS and mm; may be given again")->required();
   c->footer(
       "Examples:\n  carus mesh volume --labels pelvis.nii.gz --size \"6 mm\" --size-of 4=\"2 mm\" --out pelvis.vtu "
       "pelvis.msh\n"
-      "  carus mesh volume --surface sacrum.stl coccyx.stl --unit mm --frame LSA --out back.inp");
+      "  carus mesh volume --surface sacrum.stl coccyx.stl --unit mm --frame LSA --out back.inp\n"
+      "  carus mesh volume --surface implant.stl --unit mm --frame RAS --feature-angle \"45 deg\" --out implant.vtu");
   c->callback([a, &status] { status = volume(*a); });
 }
 

@@ -100,15 +100,28 @@ Organ generated(const scenario::Scenario& s, const std::string& name, const Orga
 
 }  // namespace
 
-double length(const std::string& text, const std::string& option, double low, double high) {
+namespace {
+
+/// A number with its unit, from low to high in the unit that messages use; returns it in SI.
+double quantity(const std::string& text, const std::string& option, double low, double high, const char* unit,
+                const char* what, const char* example) {
   const auto q = scenario::split_quantity(text);
-  const auto* unit = q ? scenario::find_unit(q->unit) : nullptr;
-  const bool is_length = unit != nullptr && unit->dimension == scenario::find_unit("mm")->dimension;
-  const double value = is_length ? q->number * unit->factor : 0;
-  if (!is_length || !(value >= low && value <= high))
-    throw InputError(fmt::format("{} \"{}\"; allowed a length with its unit from {} mm to {} mm, as \"1 mm\"", option,
-                                 text, low / units::mm, high / units::mm));
+  const auto *given = q ? scenario::find_unit(q->unit) : nullptr, *told = scenario::find_unit(unit);
+  const double value = given != nullptr && given->dimension == told->dimension ? q->number * given->factor : -1;
+  if (!(value >= low * told->factor && value <= high * told->factor))
+    throw InputError(fmt::format("{} \"{}\"; allowed {} with its unit from {:.6g} {} to {:.6g} {}, as \"{}\"", option,
+                                 text, what, low, unit, high, unit, example));
   return value;
+}
+
+}  // namespace
+
+double length(const std::string& text, const std::string& option, double low, double high) {
+  return quantity(text, option, low / units::mm, high / units::mm, "mm", "a length", "1 mm");
+}
+
+double angle(const std::string& text, const std::string& option, double low, double high) {
+  return quantity(text, option, low / units::deg, high / units::deg, "deg", "an angle", "45 deg");
 }
 
 void add_organ_options(CLI::App& c, OrganOptions& o) {

@@ -37,5 +37,7 @@ void add_mesh_volume(CLI::App& mesh, int& status);
 
 /// A length with its unit ("0.5 mm") in metres; throws InputError naming `option` unless it is between low and high.
 double length(const std::string& text, const std::string& option, double low, double high);
+/// The same for an angle ("45 deg") in rad.
+double angle(const std::string& text, const std::string& option, double low, double high);
 
 }  // namespace carus::app

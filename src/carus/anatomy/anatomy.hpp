@@ -73,17 +73,28 @@ struct GivenBones {
   std::function<std::int32_t(const Vec3&)> label;  ///< innominate_right ... coccyx, or outside; thread-safe
   std::map<std::string, Vec3> landmarks;           ///< by the names of Pelvis::landmarks(), without the vulva's
 };
-/// Where given bones are read from; all else about them follows from it.
-/// A landmark that the user has seen, in the RAS frame of the volume.
+/// A landmark that the user has seen, in the RAS frame of the volume or the surfaces.
 struct GivenLandmark {
   std::string name;
   double right = 0, anterior = 0, superior = 0;  ///< [m]
 };
+/// Bones as closed surfaces, a file each.
+struct BoneSurfaces {
+  std::string right, left, sacrum, coccyx;
+  std::string unit, frame;  ///< of all files: imaging::convention
+
+  [[nodiscard]] bool given() const { return !(right + left + sacrum + coccyx).empty(); }
+};
+/// Where given bones are read from; all else about them follows from it. Neither a volume nor surfaces: bones are
+/// generated.
 struct BoneSource {
-  std::string file;  ///< a label volume; empty: bones are generated
+  std::string file;  ///< a label volume
   int right = 2, left = 1, sacrum = 3, coccyx = 4;
+  BoneSurfaces surfaces;
   std::vector<GivenLandmark> landmarks;  ///< take the place of those found
   bool fit_canal = true;                 ///< bend_radius and bend_start follow from where the symphysis is
+
+  [[nodiscard]] bool given() const { return !file.empty() || surfaces.given(); }
 };
 struct MeshSize {
   double fetus, uterus, abdomen_inner, abdomen_outer, bone;  ///< facet edge [m]

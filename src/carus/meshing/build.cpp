@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "carus/anatomy/abdomen.hpp"
 #include "carus/anatomy/measure.hpp"
 #include "carus/core/error.hpp"
+#include "carus/mesh/closest_point.hpp"
 #include "carus/mesh/spatial_order.hpp"
 #include "carus/meshing/keep_clear.hpp"
 #include "carus/meshing/labelled_solid.hpp"
@@ -96,11 +99,46 @@ void require_room(Anatomy& a, const Uterus& uterus, const Pelvis& pelvis) {
       o.volume * 1e6);
   if (o.depth > most_overlap)
     throw InputError(
-        fmt::format("pelvis.from: {}; at most {:.0f} mm can give way; lower canal.radius or uterus.wall_canal, or set "
+        fmt::format("pelvis: {}; at most {:.0f} mm can give way; lower canal.radius or uterus.wall_canal, or set "
                     "pelvis.fit_canal "
                     "to false and lay canal.bend_start and bend_radius yourself",
                     told, most_overlap * 1e3));
   if (o.depth > 0) a.warnings.push_back(told + "; it gives way in the mesh");
+}
+
+/// Nodes of the pelvic floor that lie in bone at rest: contact pushes them out in the first steps, if they are not too
+/// deep.
+void require_room_for_floor(Anatomy& a, const Pelvis& pelvis) {
+  const auto& floor = a.uterus.mesh;
+  const auto& m = a.abdomen.mesh;
+  const auto bone = mesh::boundary(m, [](std::int32_t label) { return label >= innominate_right; });
+  std::set<std::int32_t> nodes;
+  for (std::size_t e = 0; e < floor.tets.size(); ++e)
+    if (floor.labels[e] == levator_ani || floor.labels[e] == perineal_body)
+      nodes.insert(floor.tets[e].begin(), floor.tets[e].end());
+  double deepest = 0;
+  Vec3 where = Vec3::Zero();
+  for (const auto i : nodes) {
+    const Vec3& x = floor.nodes[i];
+    if (pelvis.label(x) == outside) continue;
+    double depth = std::numeric_limits<double>::infinity();
+    for (const auto& t : bone) {
+      const Vec3 w = mesh::closest_point_weights(x, m.nodes[t[0]], m.nodes[t[1]], m.nodes[t[2]]);
+      depth = std::min(depth, (w[0] * m.nodes[t[0]] + w[1] * m.nodes[t[1]] + w[2] * m.nodes[t[2]] - x).norm());
+    }
+    if (depth > deepest) deepest = depth, where = x;
+  }
+  a.measured["overlap_of_floor_and_bone"] = deepest;
+  if (deepest == 0) return;
+  const auto told =
+      fmt::format("the pelvic floor at rest lies {:.1f} mm deep in {} at ({:.0f}, {:.0f}, {:.0f}) mm", deepest * 1e3,
+                  name_of(pelvis.label(where)), where.x() * 1e3, where.y() * 1e3, where.z() * 1e3);
+  if (deepest > most_overlap)
+    throw InputError(
+        fmt::format("abdomen.perineal_body_thickness, abdomen.levator_thickness: {}; at most {:.0f} mm can "
+                    "give way; make the floor thinner there",
+                    told, most_overlap * 1e3));
+  a.warnings.push_back(told + "; contact pushes it out in the first steps");
 }
 
 }  // namespace
@@ -123,6 +161,7 @@ Anatomy build(const Parameters& given) {
   a.uterus = {
       "uterus", mesh_wall(uterus, PelvicFloor(p.abdomen, p.canal), p.abdomen.levator_thickness, p.mesh.uterus), {}, {}};
   a.abdomen = {"abdomen", mesh_abdomen(p, abdomen, uterus, pelvis, fetus), {}, {}};
+  require_room_for_floor(a, pelvis);
   for (Body* body : {&a.fetus, &a.uterus, &a.abdomen}) mesh::order_spatially(body->mesh);
   name_fetus(a.fetus);
   name_uterus(a.uterus, uterus);

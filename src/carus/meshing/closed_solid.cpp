@@ -10,6 +10,8 @@
 #include <CGAL/Surface_mesh.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "carus/core/error.hpp"
 
 namespace carus::meshing {
@@ -62,18 +64,24 @@ Vec3 ClosedSolid::nearest(const Vec3& x) const {
   return {p.x(), p.y(), p.z()};
 }
 
+std::vector<std::pair<std::int32_t, std::int32_t>> self_intersections(const mesh::Surface& surface) {
+  std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> faces;
+  CGAL::Polygon_mesh_processing::self_intersections(to_cgal(surface), std::back_inserter(faces));
+  std::vector<std::pair<std::int32_t, std::int32_t>> pairs;
+  for (const auto& [f, g] : faces)
+    pairs.emplace_back(std::minmax(static_cast<std::int32_t>(f), static_cast<std::int32_t>(g)));
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 void require_no_self_intersection(const mesh::Surface& surface, const std::string& name) {
-  const Mesh m = to_cgal(surface);
-  std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-  CGAL::Polygon_mesh_processing::self_intersections(m, std::back_inserter(pairs));
+  const auto pairs = self_intersections(surface);
   if (pairs.empty()) return;
   Vec3 where = Vec3::Zero();
-  for (const auto v : m.vertices_around_face(m.halfedge(pairs[0].first)))
-    where += Vec3(m.point(v).x(), m.point(v).y(), m.point(v).z()) / 3;
+  for (const auto i : surface.triangles[pairs[0].first]) where += surface.nodes[i] / 3;
   throw InputError(
       fmt::format("{}: {} pairs of triangles cut through each other, the first at ({:.1f}, {:.1f}, {:.1f}) mm; which "
-                  "side is inside "
-                  "cannot be told there; repair it in the program that made it, or mesh from labels",
+                  "side is inside cannot be told there; repair it in the program that made it, or mesh from labels",
                   name, pairs.size(), 1e3 * where.x(), 1e3 * where.y(), 1e3 * where.z()));
 }
 

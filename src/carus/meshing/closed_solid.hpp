@@ -25,6 +25,9 @@ class ClosedSolid {
   std::unique_ptr<Search> search_;
 };
 
+/// Pairs of triangles of a surface that cut through each other, by their numbers. O(n log n).
+std::vector<std::pair<std::int32_t, std::int32_t>> self_intersections(const mesh::Surface& surface);
+
 /// Throws InputError with count and place if triangles of the surface cut through each other: then which side is inside
 /// cannot be told. `name` begins the message. O(n log n).
 void require_no_self_intersection(const mesh::Surface& surface, const std::string& name);

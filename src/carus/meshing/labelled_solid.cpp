@@ -6,12 +6,15 @@
 #include <CGAL/Labeled_mesh_domain_3.h>
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_domain_with_polyline_features_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
 #include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
+#include <CGAL/refine_mesh_3.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "carus/core/error.hpp"
@@ -21,7 +24,7 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
-using Base = CGAL::Labeled_mesh_domain_3<Kernel>;
+using Base = CGAL::Mesh_domain_with_polyline_features_3<CGAL::Labeled_mesh_domain_3<Kernel>>;
 
 Vec3 vec(const Point& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -53,6 +56,17 @@ std::vector<Seed> find_seeds(const LabelFunction& solid, const Sphere& bounds, c
     const auto q = [&](double u, int d) { return static_cast<std::int64_t>(std::floor(u / bin)) + d + 100000; };
     return (q(x.x(), di) * 1000003 + q(x.y(), dj)) * 1000003 + q(x.z(), dk);
   };
+  for (const auto& line : sizing.features)  // what lies beside a feature is left to its balls
+    for (std::size_t i = 1; i < line.points.size(); ++i) {
+      const Vec3 u = line.points[i] - line.points[i - 1];
+      const int pieces = static_cast<int>(std::ceil(2 * u.norm() / line.edge));
+      for (int k = 0; k <= pieces; ++k) {
+        const Vec3 x = line.points[i - 1] + u * k / pieces;
+        bins[key(x, 0, 0, 0)].push_back(seeds.size());
+        seeds.push_back({x, 0, 0});
+      }
+    }
+  const auto beside_features = static_cast<std::ptrdiff_t>(seeds.size());
   const auto try_seed = [&](Vec3 p, Vec3 q, std::int32_t a, std::int32_t b) {
     for (int it = 0; it < 24; ++it) {
       const Vec3 m = (p + q) / 2;
@@ -82,6 +96,7 @@ std::vector<Seed> find_seeds(const LabelFunction& solid, const Sphere& bounds, c
         if (const auto b = labels[cell(i, j + 1, k)]; b != a) try_seed(at(i, j, k), at(i, j + 1, k), a, b);
         if (const auto b = labels[cell(i, j, k + 1)]; b != a) try_seed(at(i, j, k), at(i, j, k + 1), a, b);
       }
+  seeds.erase(seeds.begin(), seeds.begin() + beside_features);
   return seeds;
 }
 
@@ -94,7 +109,14 @@ class Domain : public Base {
             CGAL::parameters::bounding_object = Kernel::Sphere_3(
                 {bounds.centre.x(), bounds.centre.y(), bounds.centre.z()}, bounds.radius * bounds.radius),
             CGAL::parameters::relative_error_bound = 1e-6, CGAL::parameters::p_rng = &random),
-        seeds_(find_seeds(solid, bounds, sizing)) {}
+        seeds_(find_seeds(solid, bounds, sizing)) {
+    std::vector<std::vector<Point>> lines;
+    for (const auto& f : sizing.features) {
+      lines.emplace_back();
+      for (const auto& x : f.points) lines.back().emplace_back(x.x(), x.y(), x.z());
+    }
+    add_features(lines.begin(), lines.end());  // curve indices count from 1
+  }
 
   struct Construct_initial_points {
     const Domain& domain;
@@ -108,12 +130,25 @@ class Domain : public Base {
   [[nodiscard]] Construct_initial_points construct_initial_points_object() const { return {*this}; }
   [[nodiscard]] std::size_t seeds() const { return seeds_.size(); }
 
+  /// Into a mesh that has points already.
+  template <class Complex>
+  void insert_seeds(Complex& c3t3) const {
+    for (const auto& s : seeds_) {
+      const auto v = c3t3.triangulation().insert(
+          typename Complex::Triangulation::Weighted_point(Point(s.x.x(), s.x.y(), s.x.z())));
+      if (v == typename Complex::Vertex_handle() || v->in_dimension() >= 0)
+        continue;  // within a ball, or one of its own
+      c3t3.set_dimension(v, 2);
+      c3t3.set_index(v, index_from_surface_patch_index({s.a, s.b}));
+    }
+  }
+
  private:
   std::vector<Seed> seeds_;
 };
 
 using Triangulation = CGAL::Mesh_triangulation_3<Domain, CGAL::Default, CGAL::Sequential_tag>::type;
-using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation, Domain::Corner_index, Domain::Curve_index>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
 /// A field of CGAL's kind from a function of point and labels.
@@ -127,6 +162,21 @@ struct Field {
       return f(vec(p), patch->first, patch->second);
     const auto* label = boost::get<Domain::Subdomain_index>(&index);
     return f(vec(p), label ? *label : 0, 0);
+  }
+};
+
+/// The same for lines: their own edges; at a corner the shortest of those that meet there.
+struct FeatureField {
+  using FT = Kernel::FT;
+  using Point_3 = Point;
+  using Index = Domain::Index;
+  const std::vector<mesh::FeatureLine>& lines;
+  FT operator()(const Point_3& p, int dimension, const Index& index) const {
+    if (dimension == 1) return lines.at(boost::get<Domain::Curve_index>(index) - 1).edge;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& line : lines)
+      if (line.points.front() == vec(p) || line.points.back() == vec(p)) least = std::min(least, line.edge);
+    return least;
   }
 };
 
@@ -165,8 +215,19 @@ mesh::TetMesh mesh_labelled_solid(const LabelFunction& solid, const Sphere& boun
   const Criteria criteria(CGAL::parameters::facet_angle = 25, CGAL::parameters::facet_size = facet,
                           CGAL::parameters::facet_distance = distance, CGAL::parameters::cell_radius_edge_ratio = 2.5,
                           CGAL::parameters::cell_size = cell);
-  auto c3t3 =
-      CGAL::make_mesh_3<Complex>(domain, criteria, CGAL::parameters::no_perturb(), CGAL::parameters::no_exude());
+  const auto as_it_is = std::pair(CGAL::parameters::no_perturb(), CGAL::parameters::no_exude());
+  Complex c3t3;
+  if (sizing.features.empty()) {
+    c3t3 =
+        CGAL::make_mesh_3<Complex>(domain, criteria, CGAL::parameters::no_features(), as_it_is.first, as_it_is.second);
+  } else {
+    // The lines alone first, for CGAL takes seeds only where it has no feature to begin with.
+    const Criteria lines(CGAL::parameters::edge_size = FeatureField{sizing.features});
+    c3t3 =
+        CGAL::make_mesh_3<Complex>(domain, lines, CGAL::parameters::features(domain), as_it_is.first, as_it_is.second);
+    domain.insert_seeds(c3t3);
+    CGAL::refine_mesh_3(c3t3, domain, criteria, as_it_is.first, as_it_is.second);
+  }
   // No time limit: it would make the mesh depend on the machine. raise_altitudes does better than CGAL's perturbation,
   // and four times faster.
   CGAL::exude_mesh_3(c3t3, CGAL::parameters::sliver_bound = sizing.sliver_bound_deg);

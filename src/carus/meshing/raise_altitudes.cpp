@@ -14,8 +14,7 @@ namespace {
 constexpr double flat =
     0.94;  // cosine between a facet and the mean of the surface about a node that may slide in it (20 degrees)
 constexpr int passes = 8;
-constexpr double allowance = 0.0004;  // how far a node may leave its surface [m]: within what facets leave it anyway
-constexpr double slim = 0.12;         // smallest altitude over longest edge
+constexpr double slim = 0.12;  // smallest altitude over longest edge
 
 enum class Freedom { fixed, slides, free };
 
@@ -89,7 +88,7 @@ Vec3 allowed(const Node& n, const Vec3& first, const Vec3& x, double off) {
 
 }  // namespace
 
-void raise_altitudes(mesh::TetMesh& m, double target) {
+void raise_altitudes(mesh::TetMesh& m, double target, double allowance) {
   const auto nodes = freedoms(m);
   const auto first = m.nodes;
   std::vector<std::vector<std::int32_t>> star(m.nodes.size());

@@ -16,6 +16,7 @@ class ExplicitEngine final : public Engine {
   const fem::State& state() const override { return solver_.state(); }
   void restore(const fem::State& state) override { solver_.restore(state); }
   solve::Observables observe() const override { return solver_.observe(); }
+  std::int64_t iterations() const override { return solver_.state().step; }
   Facts facts() const override {
     const auto step = solver_.step_report();
     return {
@@ -42,6 +43,7 @@ class ImplicitEngine final : public Engine {
   solve::Observables observe() const override { return solver_.observe(); }
   std::vector<std::pair<std::string, double>> timings() const override { return solver_.timings(); }
 
+  std::int64_t iterations() const override { return solver_.counts().newton; }
   Facts facts() const override {
     const auto steps = std::int64_t(std::ceil(duration_ / options_.time_step));
     return {steps, 1, {options_.time_step, options_.time_step, "none", 0}, plan(steps)};

@@ -28,6 +28,8 @@ class Engine {
     std::string plan;  ///< for the log: steps, and what limits them
   };
   virtual Facts facts() const = 0;
+  /// What the time goes into, since construction: steps of the explicit solver, Newton iterations of the implicit one.
+  virtual std::int64_t iterations() const = 0;
   virtual std::vector<std::pair<std::string, double>> timings() const = 0;
 };
 

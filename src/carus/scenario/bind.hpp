@@ -18,6 +18,10 @@ void bind_anatomy(Visitor& v, anatomy::Parameters& a) {
   v("pelvis.from", bones.file);
   v("pelvis.labels.innominate_right", bones.right), v("pelvis.labels.innominate_left", bones.left);
   v("pelvis.labels.sacrum", bones.sacrum), v("pelvis.labels.coccyx", bones.coccyx);
+  auto& surfaces = bones.surfaces;
+  v("pelvis.surfaces.innominate_right", surfaces.right), v("pelvis.surfaces.innominate_left", surfaces.left);
+  v("pelvis.surfaces.sacrum", surfaces.sacrum), v("pelvis.surfaces.coccyx", surfaces.coccyx);
+  v("pelvis.surfaces.unit", surfaces.unit), v("pelvis.surfaces.frame", surfaces.frame);
   v.list("pelvis.landmarks", bones.landmarks, [&](const std::string& item, anatomy::GivenLandmark& l) {
     v(item + ".name", l.name);
     v(item + ".right", l.right), v(item + ".anterior", l.anterior), v(item + ".superior", l.superior);

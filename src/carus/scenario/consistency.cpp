@@ -90,9 +90,9 @@ class Check {
 
   void landmarks() {
     const auto& from = s_.anatomy.bones_from;
-    if (from.file.empty() && !from.landmarks.empty())
+    if (!from.given() && !from.landmarks.empty())
       refuse("pelvis.landmarks", fmt::format("a list of {}", from.landmarks.size()), "an empty list",
-             "without pelvis.from there is no volume in which they could have been seen");
+             "without pelvis.from or pelvis.surfaces there is nothing in which they could have been seen");
     for (auto l = from.landmarks.begin(); l != from.landmarks.end(); ++l)
       if (std::any_of(from.landmarks.begin(), l, [&](const auto& other) { return other.name == l->name; }))
         refuse(fmt::format("pelvis.landmarks[{}].name", l - from.landmarks.begin()), "\"" + l->name + "\"",

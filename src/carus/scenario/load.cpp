@@ -75,7 +75,12 @@ Scenario build(Raw root, const std::filesystem::path& file, const std::vector<st
     path = std::filesystem::absolute(folder / path).lexically_normal().string();
   };
   locate("anatomy.from", s.anatomy_from);
-  locate("pelvis.from", s.anatomy.bones_from.file);
+  auto& bones = s.anatomy.bones_from;
+  locate("pelvis.from", bones.file);
+  locate("pelvis.surfaces.innominate_right", bones.surfaces.right);
+  locate("pelvis.surfaces.innominate_left", bones.surfaces.left);
+  locate("pelvis.surfaces.sacrum", bones.surfaces.sacrum);
+  locate("pelvis.surfaces.coccyx", bones.surfaces.coccyx);
   take_real_pelvis(s);
   problems = inconsistencies(s, settings);
   if (!problems.empty()) throw InputError(problems);

@@ -72,6 +72,33 @@ TEST(Simplification, AnErrorBoundIsKeptAndUsed) {
   EXPECT_LT(coarse.nodes.size(), s.nodes.size() / 5);
 }
 
+TEST(Simplification, ThinShellsKeepWhatWouldCutThroughItself) {
+  auto shell = sphere_surface({0, 0, 0}, 0.05, 4);  // and a cavity in it
+  const auto inner = sphere_surface({0.0004, 0, 0}, 0.049, 4);
+  const auto n = std::int32_t(shell.nodes.size());
+  shell.nodes.insert(shell.nodes.end(), inner.nodes.begin(), inner.nodes.end());
+  for (const auto& t : inner.triangles) shell.triangles.push_back({n + t[0], n + t[2], n + t[1]});
+  ASSERT_FALSE(self_intersections(simplify(shell, {600})[0]).empty());
+  const auto sound = simplify_soundly(shell, 600);
+  EXPECT_TRUE(self_intersections(sound).empty());
+  EXPECT_LT(sound.nodes.size(), shell.nodes.size() / 2);
+  EXPECT_NEAR(mesh::volume(sound) / mesh::volume(shell), 1, 0.01);
+}
+
+TEST(Simplification, WhatCutsThroughItselfIsRefused) {
+  auto two = sphere_surface({0, 0, 0}, 0.02, 3);
+  const auto other = sphere_surface({0.03, 0, 0}, 0.02, 3);
+  const auto n = std::int32_t(two.nodes.size());
+  two.nodes.insert(two.nodes.end(), other.nodes.begin(), other.nodes.end());
+  for (const auto& t : other.triangles) two.triangles.push_back({n + t[0], n + t[1], n + t[2]});
+  try {
+    static_cast<void>(simplify_soundly(two, 300));
+    FAIL();
+  } catch (const NumericalFailure& e) {
+    EXPECT_THAT(e.what(), testing::HasSubstr("triangles of the surface itself cut through each other, first near (1"));
+  }
+}
+
 TEST(Precision, AlphaIsThePapers) {
   PrecisionRow r;
   r.deviation.forward.mean = 0.0005, r.deviation.backward.mean = 0.001;

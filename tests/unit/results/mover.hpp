@@ -38,6 +38,7 @@ class Mover final : public results::Engine {
   void restore(const fem::State& state) override { state_ = state; }
   solve::Observables observe() const override { return {}; }
   Facts facts() const override { return {1920, 960, {}, {}}; }
+  std::int64_t iterations() const override { return state_.step; }
   std::vector<std::pair<std::string, double>> timings() const override { return {}; }
 
   std::function<void(double)> on_advance;

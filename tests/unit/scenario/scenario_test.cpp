@@ -142,7 +142,7 @@ TEST(Scenario, LandmarksAreOfAVolumeAndNamedOnce) {
   EXPECT_EQ(
       problems("pelvis: {landmarks: [{name: coccyx_tip}, {name: promontory}, {name: coccyx_tip}]}\n"),
       (Messages{"s.yaml: pelvis.landmarks: a list of 3 contradicts other keys; allowed an empty list; without "
-                "pelvis.from there is no volume in which they could have been seen",
+                "pelvis.from or pelvis.surfaces there is nothing in which they could have been seen",
                 "s.yaml: pelvis.landmarks[2].name: \"coccyx_tip\" contradicts other keys; allowed each name once; "
                 "one of the two must go"}));
 }
