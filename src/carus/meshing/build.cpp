@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <set>
 
 #include "carus/anatomy/abdomen.hpp"
 #include "carus/anatomy/measure.hpp"
 #include "carus/core/error.hpp"
-#include "carus/mesh/closest_point.hpp"
+#include "carus/mesh/depth.hpp"
 #include "carus/mesh/spatial_order.hpp"
 #include "carus/meshing/keep_clear.hpp"
 #include "carus/meshing/labelled_solid.hpp"
@@ -106,39 +104,24 @@ void require_room(Anatomy& a, const Uterus& uterus, const Pelvis& pelvis) {
   if (o.depth > 0) a.warnings.push_back(told + "; it gives way in the mesh");
 }
 
-/// Nodes of the pelvic floor that lie in bone at rest: contact pushes them out in the first steps, if they are not too
-/// deep.
-void require_room_for_floor(Anatomy& a, const Pelvis& pelvis) {
-  const auto& floor = a.uterus.mesh;
-  const auto& m = a.abdomen.mesh;
-  const auto bone = mesh::boundary(m, [](std::int32_t label) { return label >= innominate_right; });
-  std::set<std::int32_t> nodes;
-  for (std::size_t e = 0; e < floor.tets.size(); ++e)
-    if (floor.labels[e] == levator_ani || floor.labels[e] == perineal_body)
-      nodes.insert(floor.tets[e].begin(), floor.tets[e].end());
-  double deepest = 0;
-  Vec3 where = Vec3::Zero();
-  for (const auto i : nodes) {
-    const Vec3& x = floor.nodes[i];
-    if (pelvis.label(x) == outside) continue;
-    double depth = std::numeric_limits<double>::infinity();
-    for (const auto& t : bone) {
-      const Vec3 w = mesh::closest_point_weights(x, m.nodes[t[0]], m.nodes[t[1]], m.nodes[t[2]]);
-      depth = std::min(depth, (w[0] * m.nodes[t[0]] + w[1] * m.nodes[t[1]] + w[2] * m.nodes[t[2]] - x).norm());
-    }
-    if (depth > deepest) deepest = depth, where = x;
-  }
-  a.measured["overlap_of_floor_and_bone"] = deepest;
-  if (deepest == 0) return;
+/// Floor and bone at rest may lie in each other a little: contact pushes them apart in the first steps.
+void require_room_for_floor(Anatomy& a) {
+  const auto floor = [](std::int32_t label) { return label == levator_ani || label == perineal_body; };
+  const auto bone = [](std::int32_t label) { return label >= innominate_right; };
+  const auto &soft = a.uterus.mesh, &hard = a.abdomen.mesh;
+  const auto in_bone = mesh::deepest(soft, floor, hard, bone), in_floor = mesh::deepest(hard, bone, soft, floor);
+  const auto& [depth, where] = in_bone.depth > in_floor.depth ? in_bone : in_floor;
+  a.measured["overlap_of_floor_and_bone"] = depth;
+  if (depth < 1e-5) return;  // they touch
   const auto told =
-      fmt::format("the pelvic floor at rest lies {:.1f} mm deep in {} at ({:.0f}, {:.0f}, {:.0f}) mm", deepest * 1e3,
-                  name_of(pelvis.label(where)), where.x() * 1e3, where.y() * 1e3, where.z() * 1e3);
-  if (deepest > most_overlap)
+      fmt::format("pelvic floor and bone at rest lie {:.1f} mm deep in each other at ({:.0f}, {:.0f}, {:.0f}) mm",
+                  depth * 1e3, where.x() * 1e3, where.y() * 1e3, where.z() * 1e3);
+  if (depth > most_overlap)
     throw InputError(
-        fmt::format("abdomen.perineal_body_thickness, abdomen.levator_thickness: {}; at most {:.0f} mm can "
-                    "give way; make the floor thinner there",
+        fmt::format("abdomen: {}; at most {:.0f} mm can give way; lower abdomen.perineal_body_thickness or "
+                    "abdomen.levator_thickness",
                     told, most_overlap * 1e3));
-  a.warnings.push_back(told + "; contact pushes it out in the first steps");
+  a.warnings.push_back(told + "; contact pushes them apart in the first steps");
 }
 
 }  // namespace
@@ -161,7 +144,7 @@ Anatomy build(const Parameters& given) {
   a.uterus = {
       "uterus", mesh_wall(uterus, PelvicFloor(p.abdomen, p.canal), p.abdomen.levator_thickness, p.mesh.uterus), {}, {}};
   a.abdomen = {"abdomen", mesh_abdomen(p, abdomen, uterus, pelvis, fetus), {}, {}};
-  require_room_for_floor(a, pelvis);
+  require_room_for_floor(a);
   for (Body* body : {&a.fetus, &a.uterus, &a.abdomen}) mesh::order_spatially(body->mesh);
   name_fetus(a.fetus);
   name_uterus(a.uterus, uterus);

@@ -155,7 +155,7 @@ Implicit::Impl::Refusal Implicit::Impl::minimise() {
     last.time = t1, last.dt = dt, last.iteration = iteration, last.length = length, last.taken = a;
     if (options.watch) options.watch(last);
     if (!refusal.empty()) return refusal;
-    if (!imposed && a * length <= options.newton_tolerance) return {};
+    if (!imposed && length <= options.newton_tolerance) return {};
   }
   return fmt::format("no convergence in {} Newton iterations", options.max_iterations);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "carus/contact/intersection.hpp"
@@ -110,6 +111,23 @@ TEST(ImplicitContact, ABlockDrivenHardDoesNotPassThrough) {
   for (std::size_t i = base_nodes; i < m.mesh.nodes.size(); ++i) borne += seen.contact_force[i];
   EXPECT_GT(pressed, 1);
   EXPECT_NEAR(pressed, borne.z(), 1e-4 * pressed);
+}
+
+TEST(ImplicitContact, AStepIsSolvedHoweverLittleOfACorrectionWasFree) {
+  // Thrown down hard onto a thin barrier: most of the first corrections is not free of collisions.
+  const auto m = two_blocks(0, {0, 0, -2000});
+  auto o = slow(100);
+  o.barrier_distance = 2e-6;
+  o.newton_tolerance = 1e-5;
+  NewtonIteration last{};
+  double least_clear = 1;
+  o.watch = [&](const NewtonIteration& n) { last = n, least_clear = std::min(least_clear, n.clear); };
+  Implicit s(m, o);
+  for (int k = 1; k <= 10; ++k) {
+    s.advance_to(0.05 * k);
+    EXPECT_LE(last.length, o.newton_tolerance) << "after " << 0.05 * k << " s";
+  }
+  EXPECT_LT(least_clear, 0.1);
 }
 
 TEST(ImplicitContact, CuttingAtTheStartIsRefusedWithThePlace) {
