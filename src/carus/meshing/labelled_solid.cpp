@@ -202,7 +202,7 @@ mesh::TetMesh tets_of(const Complex& c3t3) {
 mesh::TetMesh mesh_labelled_solid(const LabelFunction& solid, const Sphere& bounds, const Sizing& sizing) {
   CGAL::Random random(0);
   const Domain domain(solid, bounds, sizing, random);
-  if (domain.seeds() < 4)
+  if (domain.seeds() < 4 && sizing.features.empty())
     throw InputError(
         "meshing: the solid has no surface within its bounding sphere; hint: check its size against seed_spacing");
 
