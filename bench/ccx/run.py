@@ -6,7 +6,9 @@
 
 Prints reaction, difference, seconds (wall and processor, least of the repetitions) and their ratio, the verdict last. First
 by 0.1 %, where both must agree within 0.1 %; then as the scenario says, where the volumetric laws part: ccx has
-K/2 (J - 1)^2, Carus K/4 (J^2 - 1 - 2 ln J), stiffer under compression by about half of 1 - J. Hence 2 %.
+K/2 (J - 1)^2, Carus K/4 (J^2 - 1 - 2 ln J), stiffer under compression by about half of 1 - J. That makes 0.3 % at a Poisson's
+ratio of 0.49 (1.1 to 1.5 % at 0.45, and on the coarse mesh of small_block.yaml, whose corners are squeezed more). Hence
+1 %, or what --allowed says. Both choose their steps, beginning with the scenario's.
 Exit status 0: within that; 1: not; 77: skipped, because ccx is not there (apt install calculix-ccx).
 """
 import argparse
@@ -57,6 +59,7 @@ def main():
     parser.add_argument("--carus", default=ROOT / "build/release/bin/carus", type=pathlib.Path)
     parser.add_argument("--threads", nargs="+", type=int, default=[1, 2])
     parser.add_argument("--repeats", type=int, default=1)
+    parser.add_argument("--allowed", type=float, default=1, help="difference of the reactions where strains are large [%%]")
     a = parser.parse_args()
     if shutil.which("ccx") is None:
         print("SKIPPED: ccx is not there; apt install calculix-ccx")
@@ -64,12 +67,12 @@ def main():
     met = True
     print(f"{'case':>8} {'threads':>7} {'ccx [N]':>12} {'carus [N]':>12} {'difference':>10} "
           f"{'ccx wall/cpu [s]':>18} {'carus wall/cpu [s]':>18} {'faster (wall)':>13}")
-    for case, allowed, threads, more in [("small", 1e-3, a.threads[:1], SMALL), ("as told", 0.02, a.threads, [])]:
+    for case, allowed, threads, more in [("small", 1e-3, a.threads[:1], SMALL), ("as told", a.allowed / 100, a.threads, [])]:
         for n in threads:
             error = pair(a, case, n, more)
             met = met and error < allowed
-    print("MET: reactions within 0.1 % where strains are small, within 2 % where they are large" if met else
-          "NOT MET: reactions differ by more than 0.1 % where strains are small, or 2 % where they are large")
+    print(f"MET: reactions within 0.1 % where strains are small, within {a.allowed:g} % where they are large" if met else
+          f"NOT MET: reactions differ by more than 0.1 % where strains are small, or {a.allowed:g} % where they are large")
     return 0 if met else 1
 
 
