@@ -65,12 +65,12 @@ void Implicit::Impl::move(double a, const std::vector<Vec3>* given, std::vector<
 /// Goes along the direction as far as the potential, less the loads' work on the way, falls. Where motions are
 /// imposed it may rise: then as far as it is finite.
 Implicit::Impl::Refusal Implicit::Impl::search_line(const std::vector<Vec3>* given, double& a) {
+  a = last.clear = clear_way(given);
   const Stopwatch watch(seconds[line_search]);
   const double before = potential(x, angle);
   const double slope = last.slope = -dot(residual, direction);
   std::vector<Vec3> next;
   std::vector<double> turned;
-  a = last.clear = clear_way(given);
   for (const double least = 1e-9 * a; a > least; a *= 0.5) {
     ++counts.line_search;
     move(a, given, next, turned);
