@@ -77,6 +77,32 @@ TEST(MeshCommand, VolumeMakesTouchingOrgansShareNodes) {
   EXPECT_TRUE(fs::exists(fs::path(out).replace_extension(".stl")));
 }
 
+TEST(MeshCommand, FeatureAnglesThatCannotBeAreRefused) {
+  const fs::path out = fresh("features.vtu"), log = out.string() + ".log";
+  EXPECT_EQ(
+      wait_for(start(
+          {"mesh", "volume", "--labels", phantom().string(), "--feature-angle", "45 deg", "--out", out.string()}, log)),
+      2);
+  EXPECT_THAT(text(log),
+              testing::HasSubstr("--feature-angle is of --surface: the surfaces of labels are smooth; leave it out"));
+  const fs::path ball = fresh("smooth_ball.stl");
+  ASSERT_EQ(wait_for(start({"mesh", "surface", "--labels", phantom().string(), "--label", "1", "--nodes", "500",
+                            "--out", ball.string()},
+                           log)),
+            0)
+      << text(log);
+  for (const std::string angle : {"10 deg", "45", "45 mm", "nan deg"}) {
+    EXPECT_EQ(wait_for(start({"mesh", "volume", "--surface", ball.string(), "--unit", "mm", "--frame", "RAS",
+                              "--feature-angle", angle, "--out", out.string()},
+                             log)),
+              2);
+    EXPECT_THAT(text(log),
+                testing::HasSubstr("--feature-angle \"" + angle +
+                                   "\"; allowed an angle with its unit from 30 deg to 150 deg, as \"45 deg\""));
+  }
+  EXPECT_FALSE(fs::exists(out));
+}
+
 TEST(MeshCommand, SurfaceIsSimplifiedAsAskedAndBadInputRefused) {
   const fs::path out = fresh("ball.stl"), log = out.string() + ".log";
   ASSERT_EQ(wait_for(start({"mesh", "surface", "--labels", phantom().string(), "--label", "1", "--nodes", "500",
@@ -91,6 +117,19 @@ TEST(MeshCommand, SurfaceIsSimplifiedAsAskedAndBadInputRefused) {
       wait_for(start({"mesh", "surface", "--labels", phantom().string(), "--label", "9", "--out", out.string()}, log)),
       2);
   EXPECT_THAT(text(log), testing::HasSubstr("label 9 does not occur; there are 1, 2"));
+}
+
+TEST(RealPelvis, AFloorThatLiesInBoneIsRefused) {
+  const std::string source = CARUS_SOURCE_DIR;
+  if (!fs::exists(source + "/../shared/data/pelvis_labels_1mm.nii.gz")) GTEST_SKIP() << "the real pelvis is not there";
+  const fs::path log = fresh("floor.log");
+  EXPECT_EQ(wait_for(start({"check", source + "/scenarios/real_pelvis.yaml", "--set", "resolution=coarse", "--set",
+                            "abdomen.perineal_body_thickness=24 mm"},
+                           log)),
+            2);
+  EXPECT_THAT(text(log), testing::HasSubstr("abdomen: pelvic floor and bone at rest lie 10.3 mm deep in each other at "
+                                            "(5, 3, -93) mm; at most 6 mm can give way; lower "
+                                            "abdomen.perineal_body_thickness or abdomen.levator_thickness"));
 }
 
 TEST(RealPelvis, LandmarksBesideTheVolumeAreRefused) {

@@ -16,14 +16,14 @@ LabelVolume voxelise(const std::vector<LabelledSurface>& surfaces, double spacin
   constexpr double most = 2e8;
   Eigen::AlignedBox3d box;
   for (const auto& s : surfaces) box.extend(mesh::box(s.surface));
-  const Eigen::Vector3i size = (box.sizes() / spacing).array().ceil().cast<int>() + 2 * margin + 1;
-  if (size.cast<double>().prod() > most)
+  const Vec3 wanted = (box.sizes() / spacing).array().ceil() + 2 * margin + 1;
+  if (!(wanted.prod() <= most))
     throw InputError(
         fmt::format("voxels of {:.2g} mm over {:.0f} x {:.0f} x {:.0f} mm: more than {:.0f} million; are "
                     "the surfaces in the unit that is said?",
                     1e3 * spacing, 1e3 * box.sizes().x(), 1e3 * box.sizes().y(), 1e3 * box.sizes().z(), most / 1e6));
   LabelVolume v;
-  v.size = {size.x(), size.y(), size.z()};
+  for (int k = 0; k < 3; ++k) v.size[k] = static_cast<int>(wanted[k]);
   v.axes *= spacing;
   v.origin = box.min().array() - margin * spacing;
   v.labels.resize(v.index(0, 0, v.size[2]));

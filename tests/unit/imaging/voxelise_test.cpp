@@ -34,12 +34,13 @@ TEST(Voxelise, KeepsVolumesAndTheFirstOfTwo) {
 }
 
 TEST(Voxelise, SaysWhenTheUnitMustBeWrong) {
-  try {
-    static_cast<void>(voxelise({{box_surface({0, 0, 0}, {300, 200, 200}), 1}}, 0.001));
-    FAIL();
-  } catch (const InputError& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("are the surfaces in the unit that is said?"));
-  }
+  for (const double size : {300.0, 3e8})  // [m]; the second has more voxels along an edge than an int can count
+    try {
+      static_cast<void>(voxelise({{box_surface({0, 0, 0}, {size, 200, 200}), 1}}, 0.001));
+      FAIL();
+    } catch (const InputError& e) {
+      EXPECT_THAT(e.what(), testing::HasSubstr("are the surfaces in the unit that is said?"));
+    }
 }
 
 }  // namespace
