@@ -122,7 +122,7 @@ void bench_birth(scenario::Scenario s, const BenchArguments& a, const std::vecto
       const auto first = engine->iterations();
       const auto before = engine->timings();
       const auto begin = std::chrono::steady_clock::now();
-      engine->advance_to(engine->state().time + steps * facts.step.time_step * facts.labour_per_pseudo);
+      engine->advance_to(engine->state().time + steps * facts.step.time_step * engine->state().labour_per_pseudo);
       const double whole = seconds_since(begin);
       return std::pair(between(before, engine->timings(), whole),
                        int(std::max<std::int64_t>(1, engine->iterations() - first)));

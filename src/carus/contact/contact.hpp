@@ -20,7 +20,7 @@ struct Surface {
   std::vector<std::int32_t> around_begin, around;  ///< local vertex -> incident triangles (CSR)
   std::vector<std::uint8_t> on_border;             ///< local vertex lies on an open edge
   /// Unit, kept up to date by Contact. Per local vertex the mean of all facets round it; then, for vertices of edges
-  /// that are sharp at rest, one for each of their sides: the facets round it that lie within 50° of one of them.
+  /// that are sharp at rest (over 50°), one for each of their sides: the facets between two such edges.
   std::vector<Vec3> normal;
   std::vector<std::array<std::int32_t, 3>> shade;  ///< per triangle and corner: the normal that stands for its side
   std::vector<std::int32_t> side_begin;            ///< local vertex -> its sides, in `normal`; none where smooth
@@ -34,6 +34,7 @@ struct Surface {
 
  private:
   void find_sides();
+  [[nodiscard]] std::vector<std::int32_t> take_side(std::vector<std::int32_t>& left) const;
   std::vector<std::int32_t> side_facets_begin_, side_facets_;  // side -> its triangles
 };
 
@@ -52,7 +53,7 @@ struct HingeBody {
 struct Options {
   double activation = 1e-4;     ///< [m] a pair enters the solve when its gap is less than that and what may close it
   double reach = 0.010;         ///< [m] distance up to which pairs are looked for at a renewal
-  double correction_speed = 1;  ///< [m/s] at most, outward, where penetrated
+  double correction_speed = 1;  ///< [m/s] at most, outward, where penetrated; moves, but leaves no momentum
   double max_depth = 0.004;  ///< [m] a node behind a facet and farther from it belongs elsewhere (a wall's other side)
   double self_exclusion = 0.02;  ///< [m] rest distance below which a wall does not touch its own other side
   double fold_depth = 3e-4;      ///< [m] < max_depth; nearer to itself than that, what lies deeper is a ridge, no fold
@@ -79,6 +80,7 @@ struct alignas(64) Constraint {
   std::array<Vec3, 4> response;  ///< velocities that a unit impulse gives to the node and to the facet's corners [1/kg]
   double lever_node, lever_facet;  ///< axis.((p - o) x n) of the hinges
   Vec3 slip;                       ///< tangential impulse [N s]
+  double lift;                     ///< impulse [N s] >= 0 that undoes the penetration, forgotten after the step
 };
 
 /// Frictionless or Coulomb contact between moving surfaces by impulses: find gaps, then projected Gauss-Seidel on
@@ -94,12 +96,18 @@ class Contact {
           std::vector<Vec3> inverse_mass, std::vector<Vec3> inverse_mass_blocked,
           std::vector<std::int16_t> hinge_of_node, std::vector<HingeBody> hinges, const Options& options);
 
+  /// Other inverse masses from the next `detect` on, `hinges` by their inverse inertias; of the same lengths as before.
+  void weigh(const std::vector<Vec3>& inverse_mass, const std::vector<Vec3>& inverse_mass_blocked,
+             const std::vector<double>& hinges);
   /// Finds the active constraints, true if they are others than before: the foot of a node on its facet is looked for
   /// anew only every few steps, between them the gap changes along its normal. `max_speed` bounds every nodal speed in
   /// this step [m/s].
   bool detect(const std::vector<Vec3>& x, double dt, double max_speed);
   /// Changes the velocities (and hinge rates) so that no active pair closes faster than its gap allows.
   void solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate);
+  /// After `solve`: velocities that take penetrated pairs apart, added to `lift` [m/s], zero on entry. They are to move
+  /// the nodes in this step and to be forgotten: kept, each penetration would leave kinetic energy behind. Hinges stay.
+  void part_penetrated(const std::vector<Vec3>& v, std::vector<Vec3>& lift);
   /// To be told how far any node moved at most in this step [m].
   void moved(double distance) { since_look_ += distance; }
 
@@ -172,6 +180,7 @@ class Contact {
   bool through_the_wall(const Surface& wall, const Probe& probe, std::int32_t triangle) const;
   [[nodiscard]] double deepest(const Probe& probe, std::int32_t triangle) const;
   bool admissible(const Probe& probe, std::int32_t triangle) const;
+  [[nodiscard]] bool outside_edge(const Surface& s, std::int32_t triangle, const Vec3& w, const Vec3& d) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c, double& clearance) const;
   [[nodiscard]] Vec3 response(std::int32_t node, const Vec3& impulse) const {
     const Vec3& b = inverse_mass_blocked_[node];
@@ -183,6 +192,8 @@ class Contact {
   double relax(Constraint& c, std::vector<Vec3>& v, std::vector<double>& rate) const;
   void rub(Constraint& c, std::vector<Vec3>& v) const;
   void sweep(int part, int number, std::vector<Vec3>& v, std::vector<double>& rate);
+  void raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>& lift) const;
+  void raise_part(int part, const std::vector<Vec3>& v, std::vector<Vec3>& lift);
 
   std::vector<Surface> surfaces_;
   std::vector<Pair> pairs_;

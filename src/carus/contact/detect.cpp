@@ -24,16 +24,16 @@ Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3
   return w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
 }
 
-/// Mean normal of the surface where the foot lies on an edge or corner between sides; zero elsewhere.
-Vec3 on_edge_of_sides(const Surface& s, const std::array<std::int32_t, 3>& v, const Vec3& w) {
-  Vec3 mean = Vec3::Zero();
-  if (w.minCoeff() > 0) return mean;
+/// Normal of facet t at the foot that lies on corners v of it with weights w; zero if t does not have them all.
+Vec3 normal_at(const Surface& s, std::int32_t t, const std::array<std::int32_t, 3>& v, const Vec3& w) {
+  Vec3 n = Vec3::Zero();
   for (int k = 0; k < 3; ++k) {
     if (w[k] <= 0) continue;
-    if (!s.on_crease(v[k])) return Vec3::Zero();
-    mean += w[k] * s.normal[std::size_t(v[k])];
+    const auto corner = std::find(s.local[t].begin(), s.local[t].end(), v[k]) - s.local[t].begin();
+    if (corner == 3) return Vec3::Zero();
+    n += w[k] * s.normal[std::size_t(s.shade[t][std::size_t(corner)])];
   }
-  return mean;
+  return n;
 }
 
 /// Whether a neighbour may be as near as the facet that has the foot inside: the foot lies no further from one of its
@@ -77,6 +77,13 @@ Contact::Contact(std::vector<Surface> surfaces, std::vector<Pair> pairs, const s
                                  [&](std::int32_t n) { return hinge_of_node_[n] >= 0 || !inverse_mass_[n].isZero(); }));
   }
   chunk_constraints_.resize((probes_.size() + probe_chunk - 1) / probe_chunk);
+}
+
+void Contact::weigh(const std::vector<Vec3>& inverse_mass, const std::vector<Vec3>& inverse_mass_blocked,
+                    const std::vector<double>& hinges) {
+  inverse_mass_ = inverse_mass, inverse_mass_blocked_ = inverse_mass_blocked;
+  for (std::size_t h = 0; h < hinges_.size(); ++h) hinges_[h].inverse_inertia = hinges[h];
+  look_due_ = true;  // constraints hold responses and effective masses
 }
 
 bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
@@ -273,6 +280,27 @@ Contact::Foot Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
   return best;
 }
 
+/// The foot lies on an edge or corner between sides, and the node in front of one of them: there is no plane, only the
+/// edge. Behind all of them it is inside; a rim that is squeezed to a blade turns its sides away from each other, and
+/// what lies in front of one lies deep behind the other.
+bool Contact::outside_edge(const Surface& s, std::int32_t triangle, const Vec3& w, const Vec3& d) const {
+  if (w.minCoeff() > 0) return false;
+  const auto& v = s.local[triangle];
+  std::int32_t carrier = -1;
+  for (int k = 0; k < 3; ++k) {
+    if (w[k] <= 0) continue;
+    if (!s.on_crease(v[k])) return false;
+    carrier = v[k];
+  }
+  const Vec3 own = normal_at(s, triangle, v, w);
+  bool sides = false, in_front = d.dot(own) > 0;
+  for (auto q = s.around_begin[carrier]; q < s.around_begin[carrier + 1]; ++q) {
+    const Vec3 n = normal_at(s, s.around[std::size_t(q)], v, w);
+    sides |= n != own && !n.isZero(0), in_front |= d.dot(n) > 0;
+  }
+  return sides && in_front;
+}
+
 /// `clearance`: how far node and facets must move towards each other, at least, before this can become a constraint.
 bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c, double& clearance) const {
   const Pass& pass = passes_[probe.pass];
@@ -302,8 +330,7 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c,
     return false;
   }
   double gap = along;
-  if (const Vec3 m = on_edge_of_sides(other, v, w); m.dot(d) > 0) {
-    // Outside a sharp edge there is no plane, only the edge.
+  if (outside_edge(other, probe.triangle, w, d)) {
     gap = d.norm(), n = d / gap;
   } else {
     // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
@@ -325,16 +352,14 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c,
   }
   clearance = 0;
   c.node = probe.node, c.facet = f, c.w = {w[0], w[1], w[2]}, c.n = n, c.gap = gap, c.friction = pass.friction;
-  c.impulse = probe.impulse, c.slip = Vec3::Zero();
+  c.impulse = probe.impulse, c.slip = Vec3::Zero(), c.lift = 0;
   c.target = target(gap), c.shift = gap - n.dot(d);
   finish(c, x);
   return c.mass > 0;
 }
 
-/// Least normal speed: what closes an open gap by the end of the step, or opens a penetrated one without a jerk.
-double Contact::target(double gap) const {
-  return gap >= 0 ? -gap / dt_ : std::min(-gap / dt_, options_.correction_speed);
-}
+/// Least normal speed: what closes an open gap by the end of the step.
+double Contact::target(double gap) const { return std::min(0.0, -gap / dt_); }
 
 /// Responses, and the effective mass 1 / (n.M^-1 n + sum w_k^2 n.M_k^-1 n + hinges).
 void Contact::finish(Constraint& c, const std::vector<Vec3>& x) const {

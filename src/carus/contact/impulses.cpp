@@ -87,4 +87,36 @@ void Contact::solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate) {
   }
 }
 
+/// One pair of `part_penetrated`. What bears a load holds the others' lift off.
+void Contact::raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>& lift) const {
+  double wanted_speed = 0;
+  if (c.gap < 0) {
+    const double opening = std::max(0.0, c.n.dot(relative(c, v)));
+    wanted_speed = std::clamp(-c.gap / dt_ - opening, 0.0, options_.correction_speed);
+  }
+  const double wanted = std::max(0.0, c.lift + c.mass * (wanted_speed - c.n.dot(relative(c, lift))));
+  const double change = wanted - c.lift;
+  c.lift = wanted;
+  if (change == 0) return;
+  lift[c.node] += change * c.response[0];
+  for (int k = 0; k < 3; ++k) lift[c.facet[k]] += change * c.response[k + 1];
+}
+
+void Contact::raise_part(int part, const std::vector<Vec3>& v, std::vector<Vec3>& lift) {
+  for (const auto i : live_[std::size_t(part)]) {
+    Constraint& c = constraints_[std::size_t(i)];
+    if (c.impulse > 0 || c.gap < 0) raise(c, v, lift);
+  }
+}
+
+void Contact::part_penetrated(const std::vector<Vec3>& v, std::vector<Vec3>& lift) {
+  constexpr int sweeps = 2;  // what is left over waits for the next step
+  for (auto& live : live_)
+    for (const auto i : live) constraints_[std::size_t(i)].lift = 0;
+  for (int number = 0; number < sweeps; ++number) {
+    parallel::for_chunks(parts, 1, [&](std::size_t part, std::size_t, std::size_t) { raise_part(int(part), v, lift); });
+    raise_part(parts, v, lift);
+  }
+}
+
 }  // namespace carus::contact

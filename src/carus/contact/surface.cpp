@@ -43,32 +43,48 @@ Surface::Surface(std::string surface_name, mesh::Triangles t, const std::vector<
   rest_normal = normal;
 }
 
-/// A rim or the edge of a block is no strongly curved surface: each facet there goes on in its own side only.
+/// A rim or the edge of a block is no strongly curved surface: each facet there goes on in its own side only. Sides end
+/// at sharp edges and nowhere else, so that what slides over any other edge meets the same normals on both its facets;
+/// else its gap would jump, and the jump would shake it to and fro.
 void Surface::find_sides() {
-  constexpr double cos_crease = 0.643;  // 50 degrees
   side_facets_begin_ = {0};
   for (std::size_t v = 0; v < nodes.size(); ++v) {
     side_begin[v] = std::int32_t(normal.size());
-    const auto first = around.begin() + around_begin[v], last = around.begin() + around_begin[v + 1];
-    std::vector<std::vector<std::int32_t>> sides;
-    for (auto f = first; f != last; ++f) {
-      std::vector<std::int32_t> side;
-      std::copy_if(first, last, std::back_inserter(side), [&](std::int32_t g) {
-        return facet_normal[g].dot(facet_normal[*f]) > cos_crease * facet_normal[g].norm() * facet_normal[*f].norm();
-      });
-      if (side.size() == std::size_t(last - first)) continue;
-      auto known = std::find(sides.begin(), sides.end(), side);
-      if (known == sides.end()) {
-        side_facets_.insert(side_facets_.end(), side.begin(), side.end());
-        side_facets_begin_.push_back(std::int32_t(side_facets_.size()));
-        normal.push_back(Vec3::Zero());
-        known = sides.insert(known, std::move(side));
+    std::vector<std::int32_t> left(around.begin() + around_begin[v], around.begin() + around_begin[v + 1]);
+    const std::size_t all = left.size();
+    while (!left.empty()) {
+      const auto side = take_side(left);
+      if (side.size() == all) break;
+      for (const auto f : side) {
+        const auto corner = std::find(local[f].begin(), local[f].end(), std::int32_t(v)) - local[f].begin();
+        shade[f][corner] = std::int32_t(normal.size());
       }
-      const auto corner = std::find(local[*f].begin(), local[*f].end(), std::int32_t(v)) - local[*f].begin();
-      shade[*f][corner] = side_begin[v] + std::int32_t(known - sides.begin());
+      side_facets_.insert(side_facets_.end(), side.begin(), side.end());
+      side_facets_begin_.push_back(std::int32_t(side_facets_.size()));
+      normal.push_back(Vec3::Zero());
     }
   }
   side_begin.back() = std::int32_t(normal.size());
+}
+
+/// Takes from facets round a vertex the first one and all that are joined to it by edges that are not sharp.
+std::vector<std::int32_t> Surface::take_side(std::vector<std::int32_t>& left) const {
+  constexpr double cos_crease = 0.643;  // 50 degrees
+  const auto joined = [&](std::int32_t f, std::int32_t g) {
+    int shared = 0;
+    for (const auto v : local[f]) shared += std::count(local[g].begin(), local[g].end(), v) > 0;
+    return shared >= 2 &&
+           facet_normal[g].dot(facet_normal[f]) > cos_crease * facet_normal[g].norm() * facet_normal[f].norm();
+  };
+  std::vector<std::int32_t> side{left.front()};
+  left.erase(left.begin());
+  for (std::size_t k = 0; k < side.size(); ++k) {
+    const auto rest =
+        std::stable_partition(left.begin(), left.end(), [&](std::int32_t g) { return !joined(side[k], g); });
+    side.insert(side.end(), rest, left.end());
+    left.erase(rest, left.end());
+  }
+  return side;
 }
 
 void Surface::update_normals(const std::vector<Vec3>& x) {

@@ -120,7 +120,8 @@ struct Model {
 
 /// The moving part of a solver. Doubles, one entry per node.
 struct State {
-  double time = 0;  ///< [s of labour]
+  double time = 0;               ///< [s of labour]
+  double labour_per_pseudo = 1;  ///< time scaling now: seconds of labour in one of pseudo-time
   std::int64_t step = 0;
   std::vector<Vec3> x;                          ///< current positions [m]
   std::vector<Vec3> v;                          ///< velocities [m/s of pseudo-time]

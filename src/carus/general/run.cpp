@@ -149,11 +149,11 @@ class Run {
     if (!m_.initial_velocity.empty()) {
       fem::State state = engine_.state();
       state.v = m_.initial_velocity;
-      for (Vec3& v : state.v) v *= s_.time_scaling;
+      for (Vec3& v : state.v) v *= state.labour_per_pseudo;
       engine_.restore(state);
     }
     curves_ = std::make_unique<results::Curves>(o_.out / "curves.csv", column_names(m_));
-    frames_ = std::make_unique<results::Frames>(o_.out, m_.model, strain_, s_.time_scaling);
+    frames_ = std::make_unique<results::Frames>(o_.out, m_.model, strain_);
     results::write_atomically(o_.out / "scenario.resolved.yaml",
                               fmt::format("{}\n{}", results::build_line(o_.version, o_.commit), s_.resolved));
     frame();
@@ -163,7 +163,7 @@ class Run {
     const auto c = results::read_checkpoint(checkpoint_file_);
     results::refuse_foreign(checkpoint_file_, c, scenario_hash_, mesh_hash_);
     curves_ = std::make_unique<results::Curves>(o_.out / "curves.csv", column_names(m_), std::size_t(c.rows));
-    frames_ = std::make_unique<results::Frames>(o_.out, m_.model, strain_, s_.time_scaling, c.frame_times);
+    frames_ = std::make_unique<results::Frames>(o_.out, m_.model, strain_, c.frame_times);
     engine_.restore(c.state);
     next_ = std::size_t(c.stops);
     for (std::size_t k = 1; k < wall_.size() && k < c.wall.size(); ++k) wall_[k] += c.wall[k];

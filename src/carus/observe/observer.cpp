@@ -307,6 +307,7 @@ struct Observer::Impl {
   }
 
   void add_numerics() {
+    add("time_scaling_ratio", [](const Moment& m) { return m.state.labour_per_pseudo; });
     add("least_gap_mm", [](const Moment& m) { return per_mm * m.seen.least_gap; });
     // Deepest over the pairs of bodies, to flat facets and to the smooth surface; then the latter by pair.
     add("penetration_mm", [](const Moment& m) {

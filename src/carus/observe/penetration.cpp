@@ -53,7 +53,8 @@ Vec3 area_of(const std::vector<Vec3>& x, const mesh::Triangle& t) {
   return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
 }
 
-/// For every facet and corner, the facets that share the corner and lie within 50° of this one at rest.
+/// For every facet and corner, the facets that share the corner and are joined to this one there by edges of less than
+/// 50° at rest.
 std::vector<std::array<std::vector<std::int32_t>, 3>> facets_round(const std::vector<Vec3>& rest,
                                                                    const mesh::Triangles& triangles) {
   std::vector<std::vector<std::int32_t>> of_node(rest.size());
@@ -65,8 +66,16 @@ std::vector<std::array<std::vector<std::int32_t>, 3>> facets_round(const std::ve
   std::vector<std::array<std::vector<std::int32_t>, 3>> round(triangles.size());
   for (std::size_t f = 0; f < triangles.size(); ++f) {
     for (std::size_t k = 0; k < 3; ++k) {
-      for (const auto g : of_node[triangles[f][k]]) {
-        if (normal[g].dot(normal[f]) > crease) round[f][k].push_back(g);
+      const auto& all = of_node[std::size_t(triangles[f][k])];
+      auto& fan = round[f][k];
+      fan.push_back(std::int32_t(f));
+      for (std::size_t i = 0; i < fan.size(); ++i) {
+        for (const auto g : all) {
+          const auto& t = triangles[std::size_t(fan[i])];
+          const auto shared = std::count_if(t.begin(), t.end(), [&](auto n) { return has(triangles[g], n); });
+          if (shared == 2 && normal[g].dot(normal[fan[i]]) > crease && std::count(fan.begin(), fan.end(), g) == 0)
+            fan.push_back(g);
+        }
       }
     }
   }

@@ -25,7 +25,8 @@ struct Penetration {
 ///
 /// Flat facets of edge h cut a surface of radius R short by up to h²/6R, on either side. The smooth gap takes that off:
 /// the distance to the facet less ½ Σ w_k (x_k - p)·n_k at its nearest point p = Σ w_k x_k, at most 1 mm. n_k is the
-/// normal at a corner, of those facets round it only that lie within 50° of this one at rest: rims stay rims.
+/// normal at a corner, of those facets round it only that edges of less than 50° at rest join to this one: rims stay
+/// rims.
 class PenetrationCheck {
  public:
   /// `search` [m]: gaps beyond it are not looked for.

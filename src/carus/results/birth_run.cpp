@@ -69,7 +69,7 @@ class BirthRun {
   void start() {
     curves_ = std::make_unique<Curves>(o_.out / "curves.csv", observer_.names());
     events_ = std::make_unique<Events>(o_.out / "events.jsonl", o_.event);
-    frames_ = std::make_unique<Frames>(o_.out, model_, observer_.strain(), engine_.facts().labour_per_pseudo);
+    frames_ = std::make_unique<Frames>(o_.out, model_, observer_.strain());
     write_atomically(o_.out / "scenario.resolved.yaml",
                      fmt::format("{}\n{}", build_line(o_.version, o_.commit), scenario::resolved_yaml(scenario_)));
   }
@@ -79,8 +79,7 @@ class BirthRun {
     refuse_foreign(checkpoint_file_, c, scenario_hash_, mesh_hash_);
     curves_ = std::make_unique<Curves>(o_.out / "curves.csv", observer_.names(), std::size_t(c.rows));
     events_ = std::make_unique<Events>(o_.out / "events.jsonl", c.events, o_.event);
-    frames_ =
-        std::make_unique<Frames>(o_.out, model_, observer_.strain(), engine_.facts().labour_per_pseudo, c.frame_times);
+    frames_ = std::make_unique<Frames>(o_.out, model_, observer_.strain(), c.frame_times);
     note_birth(observe::milestones(curves_->table()));
     engine_.restore(c.state);
     next_ = std::size_t(c.stops);

@@ -87,7 +87,7 @@ void write_checkpoint(const std::filesystem::path& file, const Checkpoint& c) {
     h.put("scenario_hash", c.scenario_hash), h.put("mesh_hash", c.mesh_hash), h.put("version", c.version);
     h.put("counts", std::vector<std::int64_t>{c.rows, c.stops, c.events, c.state.step});
     h.put("frame_times", c.frame_times), h.put("wall", c.wall);
-    h.put("time", std::vector<double>{c.state.time});
+    h.put("time", std::vector<double>{c.state.time, c.state.labour_per_pseudo});
     h.put("x", c.state.x), h.put("v", c.state.v);
     h.put("hinge_angle", c.state.hinge_angle), h.put("hinge_rate", c.state.hinge_rate);
     h.put("rest_length", c.state.rest_length), h.put("internal", c.state.internal);
@@ -109,9 +109,9 @@ Checkpoint read_checkpoint(const std::filesystem::path& file) {
   h.get("x", c.state.x), h.get("v", c.state.v);
   h.get("hinge_angle", c.state.hinge_angle), h.get("hinge_rate", c.state.hinge_rate);
   h.get("rest_length", c.state.rest_length), h.get("internal", c.state.internal);
-  if (counts.size() != 4 || time.size() != 1) throw InputError(fmt::format("{}: counts: damaged", file.string()));
+  if (counts.size() != 4 || time.size() != 2) throw InputError(fmt::format("{}: counts: damaged", file.string()));
   c.rows = counts[0], c.stops = counts[1], c.events = counts[2], c.state.step = counts[3];
-  c.state.time = time[0];
+  c.state.time = time[0], c.state.labour_per_pseudo = time[1];
   return c;
 }
 

@@ -11,7 +11,7 @@ namespace {
 class ExplicitEngine final : public Engine {
  public:
   ExplicitEngine(const fem::Model& model, const solve::ExplicitOptions& options)
-      : scale_(options.labour_duration / options.pseudo_duration), solver_(model, options) {}
+      : options_(options), solver_(model, options) {}
   void advance_to(double time) override { solver_.advance_to(time); }
   const fem::State& state() const override { return solver_.state(); }
   void restore(const fem::State& state) override { solver_.restore(state); }
@@ -19,17 +19,22 @@ class ExplicitEngine final : public Engine {
   std::int64_t iterations() const override { return solver_.state().step; }
   Facts facts() const override {
     const auto step = solver_.step_report();
-    return {
-        solver_.steps(), scale_, step,
-        fmt::format("{} steps of {:.3g} s (unscaled critical step {:.3g} s, limited by {}; mass added {:.2f} %); 1 s "
-                    "of pseudo-time is {:.0f} s of labour",
-                    solver_.steps(), step.time_step, step.unscaled_critical_step, step.limiting_region,
-                    100 * step.mass_scaled_fraction, scale_)};
+    const double mean = options_.labour_duration / options_.pseudo_duration;
+    const auto& [ratio, slowest, fastest] = options_.pace;
+    std::string plan = fmt::format(
+        "{} steps of {:.3g} s (unscaled critical step {:.3g} s, limited by {}; mass added {:.2f} %); 1 s "
+        "of pseudo-time is {:.0f} s of labour",
+        solver_.steps(), step.time_step, step.unscaled_critical_step, step.limiting_region,
+        100 * step.mass_scaled_fraction, mean);
+    if (slowest < fastest)
+      plan += fmt::format(", times {:g} to {:g} as kinetic/internal energy allows ({:g})", slowest, fastest, ratio);
+    const auto& state = solver_.state();
+    return {solver_.steps(), state.step > 0 ? state.time / (double(state.step) * step.time_step) : mean, step, plan};
   }
   std::vector<std::pair<std::string, double>> timings() const override { return solver_.timings(); }
 
  private:
-  double scale_;
+  solve::ExplicitOptions options_;
   solve::Explicit solver_;
 };
 

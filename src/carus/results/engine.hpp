@@ -22,8 +22,8 @@ class Engine {
   virtual solve::Observables observe() const = 0;
 
   struct Facts {
-    std::int64_t steps = 0;  ///< of the whole labour
-    double labour_per_pseudo = 1;
+    std::int64_t steps = 0;        ///< of the whole labour, at the mean pace
+    double labour_per_pseudo = 1;  ///< seconds of labour in one of pseudo-time, over what has been computed
     solve::StepReport step{};
     std::string plan;  ///< for the log: steps, and what limits them
   };

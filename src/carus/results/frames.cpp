@@ -13,12 +13,8 @@
 namespace carus::results {
 
 Frames::Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain,
-               double labour_per_pseudo, std::vector<double> times)
-    : folder_(std::move(folder)),
-      model_(model),
-      strain_(strain),
-      labour_per_pseudo_(labour_per_pseudo),
-      times_(std::move(times)) {
+               std::vector<double> times)
+    : folder_(std::move(folder)), model_(model), strain_(strain), times_(std::move(times)) {
   std::filesystem::create_directories(folder_ / "frames");
   std::vector<std::int32_t> organ_of_region;
   for (const auto& r : model.regions) {
@@ -44,7 +40,7 @@ void Frames::write(const fem::State& state, const std::vector<Vec3>& contact_for
   std::vector<Vec3> displacement(state.x.size());
   for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] = state.x[i] - model_.mesh.nodes[i];
   set_vectors(*grid.GetPointData(), "displacement", displacement);
-  set_vectors(*grid.GetPointData(), "velocity", state.v, 1 / labour_per_pseudo_);
+  set_vectors(*grid.GetPointData(), "velocity", state.v, 1 / state.labour_per_pseudo);
   set_vectors(*grid.GetPointData(), "contact_force",
               contact_force.empty() ? std::vector<Vec3>(state.x.size(), Vec3::Zero()) : contact_force);
   const auto strain = strain_.field(state.x);

@@ -20,8 +20,8 @@ namespace carus::results {
 ///     cells      region, organ (numbers by name in the field data), J, max_stretch
 class Frames {
  public:
-  /// `times`: of frames that are already there (resume). `labour_per_pseudo`: seconds of labour in one of pseudo-time.
-  Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain, double labour_per_pseudo,
+  /// `times`: of frames that are already there (resume).
+  Frames(std::filesystem::path folder, const fem::Model& model, const observe::Strain& strain,
          std::vector<double> times = {});
   /// `more` may add fields of its own.
   void write(const fem::State& state, const std::vector<Vec3>& contact_force,
@@ -34,7 +34,6 @@ class Frames {
   std::filesystem::path folder_;
   const fem::Model& model_;
   const observe::Strain& strain_;
-  double labour_per_pseudo_;
   std::vector<double> times_;
   std::vector<std::string> regions_, organs_;
   std::vector<std::int32_t> organ_;  // per tet

@@ -110,6 +110,8 @@ void bind_numerics(Visitor& v, Scenario& s) {
   v("numerics.labour_duration", n.labour_duration), v("numerics.pseudo_duration", n.pseudo_duration);
   v("numerics.pseudo_time_factor", n.pseudo_time_factor), v("numerics.time_step", n.time_step),
       v("numerics.safety", n.safety);
+  v("numerics.pace.kinetic_ratio", n.pace_kinetic_ratio), v("numerics.pace.slowest", n.pace_slowest);
+  v("numerics.pace.fastest", n.pace_fastest);
   v("numerics.drag", n.drag), v("numerics.drag_factor", n.drag_factor), v("numerics.max_node_speed", n.max_node_speed);
   v("numerics.threads", n.threads);
   v("output.frames", s.output.frames), v("output.curve_interval", s.output.curve_interval);

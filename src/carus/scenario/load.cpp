@@ -123,6 +123,8 @@ solve::ExplicitOptions explicit_options(const Scenario& s) {
   solve::ExplicitOptions o;
   o.labour_duration = n.labour_duration;
   o.pseudo_duration = n.pseudo_duration * n.pseudo_time_factor;
+  // Kinetic energy goes with the square of the time scaling: at twice the pseudo-time a quarter of it is aimed at.
+  o.pace = {n.pace_kinetic_ratio / (n.pseudo_time_factor * n.pseudo_time_factor), n.pace_slowest, n.pace_fastest};
   o.time_step = n.time_step;
   o.safety = n.safety;
   o.drag = n.drag * n.drag_factor;

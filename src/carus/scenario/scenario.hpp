@@ -72,6 +72,7 @@ struct Numerics {
   double time_step = 0;         ///< [s of pseudo-time]
   double safety = 0, drag = 0;  ///< -, [1/s of labour]
   double max_node_speed = 0;    ///< [m/s of pseudo-time]
+  double pace_kinetic_ratio = 0, pace_slowest = 1, pace_fastest = 1;
   double pseudo_time_factor = 1, drag_factor = 1, mesh_factor = 1;
   int threads = 0;
 };

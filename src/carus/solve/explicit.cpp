@@ -23,16 +23,23 @@ std::vector<Vec3> Explicit::Impl::reactions(const std::vector<Vec3>& contact_for
   return f;
 }
 
-double Explicit::Impl::hinge_kinetic() const {
-  double sum = 0;
+double Explicit::Impl::kinetic() const {
+  double sum = parallel::sum_chunks(state.v.size(), node_chunk, [&](std::size_t b, std::size_t e) {
+    double chunk = 0;
+    for (std::size_t i = b; i < e; ++i) chunk += 0.5 * masses.scaled[i] * state.v[i].squaredNorm();
+    return chunk;
+  });
   for (std::size_t h = 0; h < model.hinges.size(); ++h)
     sum += 0.5 * model.hinges[h].inertia * state.hinge_rate[h] * state.hinge_rate[h];
   return sum;
 }
 
+double Explicit::Impl::stored() const { return stored_energy(model, blocks, state) + nodal_pressure->energy(); }
+
 void Explicit::Impl::keep() {
   state.rest_length = rest_length.rings();
-  state.internal = {work.external, work.contact, work.damping, work.active, max_speed};
+  state.internal = {work.external, work.contact,        work.damping, work.active,
+                    max_speed,     double(pace.rung()), retracted_at, internal_energy};
   contact->pause(state.x);
   const auto partners = contact->save();
   state.internal.insert(state.internal.end(), partners.begin(), partners.end());
@@ -49,7 +56,9 @@ void Explicit::Impl::keep() {
 void Explicit::Impl::restore_private() {
   const double* p = state.internal.data();
   work = {p[0], p[1], p[2], p[3]}, max_speed = p[4];
-  p += 5;
+  pace.set_rung(int(p[5])), retracted_at = p[6], internal_energy = p[7];
+  p += 8;
+  take_pace();
   contact->load(p, state.x);
   p += contact->save().size();
   for (auto& b : blocks) {
@@ -79,10 +88,10 @@ const fem::State& Explicit::state() const { return impl_->state; }
 
 void Explicit::advance_to(double time) {
   Impl& s = *impl_;
-  const auto last = std::min(s.total_steps, std::int64_t(std::llround(time / (s.dt * s.scale))));
+  const double end = std::min(time, s.options.labour_duration);
   s.contact_samples = 0;
   std::fill(s.contact_impulse.begin(), s.contact_impulse.end(), Vec3::Zero());
-  while (s.state.step < last) s.step();
+  while (s.state.time + 0.5 * s.dt * s.scale < end) s.step();
   s.keep();
 }
 
@@ -105,9 +114,7 @@ Observables Explicit::observe() const {
   const Impl& s = *impl_;
   Observables o;
   o.pressures = s.pressures;
-  for (std::size_t i = 0; i < s.state.v.size(); ++i) o.kinetic += 0.5 * s.masses.scaled[i] * s.state.v[i].squaredNorm();
-  o.kinetic += s.hinge_kinetic();
-  o.internal = stored_energy(s.model, s.blocks, s.state) + s.nodal_pressure->energy();
+  o.kinetic = s.kinetic(), o.internal = s.stored();
   // The tethers are among the external forces, but what they take is stored.
   o.external_work = s.work.external + tether_energy(s.model, s.state), o.contact_work = s.work.contact,
   o.damping_work = s.work.damping;

@@ -6,17 +6,19 @@
 #include <string>
 
 #include "carus/fem/model.hpp"
+#include "carus/solve/pace.hpp"
 
 namespace carus::solve {
 
 /// Numerics of the explicit solver. All are declared in the scenario and reported with the result.
 struct ExplicitOptions {
   double labour_duration = 1920;  ///< [s]
-  double pseudo_duration = 2;     ///< [s] that the labour is mapped to (time scaling = labour/pseudo)
-  double time_step = 2.5e-5;      ///< [s of pseudo-time] target; elements that need less get mass added
-  double safety = 0.5;            ///< fraction of the critical step
-  double drag = 2e4;              ///< [1/s of labour] force = -drag * m * v_labour, on unscaled mass
-  double max_node_speed = 10;     ///< [m/s of pseudo-time] cap after the contact solve
+  double pseudo_duration = 2;     ///< [s] that the labour is mapped to at pace 1 (time scaling = labour/pseudo)
+  PaceOptions pace;
+  double time_step = 2.5e-5;   ///< [s of pseudo-time] target; elements that need less get mass added
+  double safety = 0.5;         ///< fraction of the critical step
+  double drag = 2e4;           ///< [1/s of labour] force = -drag * m * v_labour, on unscaled mass
+  double max_node_speed = 10;  ///< [m/s of pseudo-time] cap after the contact solve
   int contact_sweeps = 3;
   double contact_search = 0.004;  ///< [m] distance inside which a pair is followed
   double contact_correction = 1;  ///< [m/s of pseudo-time] at most, outward, where penetrated
@@ -51,7 +53,7 @@ class Explicit {
   Explicit(const fem::Model& model, const ExplicitOptions& options);
   ~Explicit();
   [[nodiscard]] StepReport step_report() const;
-  [[nodiscard]] std::int64_t steps() const;  ///< of the whole labour
+  [[nodiscard]] std::int64_t steps() const;  ///< of the whole labour at pace 1
   /// Advance to `time` [s of labour], or throw NumericalFailure with the organ and element; the state stays the last
   /// good one.
   void advance_to(double time);

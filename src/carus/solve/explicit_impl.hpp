@@ -39,12 +39,14 @@ struct Explicit::Impl {
   const fem::Model& model;
   ExplicitOptions options;
   parallel::Threads threads;
-  double scale;  // labour time over pseudo time
+  Pace pace;
+  double mean_scale;  // labour time over pseudo time, at pace 1
+  double scale;       // the same, now
   double dt;
   std::int64_t total_steps;
   Masses masses;
-  // Of the mass with its implicit drag, m + dt drag m0: M^-1 = D - b b^T. D per axis, 0 where blocked; b = t/sqrt(m)
-  // takes away a blocked direction t, 0 where there is none.
+  // Follows the pace: of the mass with its implicit drag, m + dt drag m0: M^-1 = D - b b^T. D per axis, 0 where
+  // blocked; b = t/sqrt(m) takes away a blocked direction t, 0 where there is none.
   std::vector<Vec3> inverse_mass, inverse_mass_blocked;
   std::vector<std::uint8_t> constrained;       // per node, Blocked bits
   std::vector<std::vector<double>> body_mass;  // per body force
@@ -66,14 +68,16 @@ struct Explicit::Impl {
   std::vector<std::int32_t> led;               // nodes that ties or imposed motions move
   std::vector<std::int32_t> touched;           // those, and nodes in constraints of contact
   std::vector<Vec3> v_before, v_free;          // of those: at the start of a step, and predicted without contact
+  std::vector<Vec3> lift;                      // of those: out of penetrations, in this step alone; else zero
   std::vector<double> rate_before, rate_free;  // of the hinges
   int contact_samples = 0;
   std::vector<NodeSums> sums, touched_sums;  // per chunk
   std::vector<fem::KernelReport> reports;
   std::vector<double> pressures;
   double max_speed = 0, hinge_speed = 0;
-  int retraction_every = 1;
-  bool loads_due = true;  // after every stop, so that a resumed run does what an uninterrupted one does
+  double retracted_at = 0;     // [s of labour]
+  double internal_energy = 0;  // at the last look, for the pace
+  bool loads_due = true;       // after every stop, so that a resumed run does what an uninterrupted one does
   double seconds[stage_count] = {};
 
   Impl(const fem::Model& m, const ExplicitOptions& o);
@@ -83,6 +87,9 @@ struct Explicit::Impl {
   void move_mass_of_ties();
   void make_inverse_masses();
   void describe_nodes();
+  void make_materials();
+  void take_pace();
+  [[nodiscard]] std::vector<double> hinge_inverse_inertias() const;
   void make_elements();
   void find_retracting();
   void make_contact();
@@ -100,6 +107,8 @@ struct Explicit::Impl {
   [[nodiscard]] double retracting_energy() const;
   void gather(fem::Block& b) const;
   void element_forces();
+  [[nodiscard]] bool loads_stand(double span) const;
+  void judge_pace();
   void find_contacts();
   [[nodiscard]] Vec3 internal_force(std::size_t i) const;
   [[nodiscard]] Vec3 predicted_velocity(std::size_t i) const;
@@ -111,6 +120,7 @@ struct Explicit::Impl {
   void turn_hinges_freely();
   void book_work(std::size_t i, const Vec3& before, NodeSums& s) const;
   void move_node(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s);
+  void lift_node(std::size_t i, NodeSums& s);
   void move_touched();
   void turn_hinges();
   void step();
@@ -118,7 +128,8 @@ struct Explicit::Impl {
 
   // explicit.cpp
   [[nodiscard]] std::vector<Vec3> reactions(const std::vector<Vec3>& contact_force) const;
-  [[nodiscard]] double hinge_kinetic() const;
+  [[nodiscard]] double kinetic() const;
+  [[nodiscard]] double stored() const;
   void keep();
   void restore_private();
 };

@@ -15,30 +15,35 @@ constexpr int block_count = 16;  // more than any machine we expect has cores fo
 }  // namespace
 
 Explicit::Impl::Impl(const fem::Model& m, const ExplicitOptions& o)
-    : model(m), options(o), threads(o.threads), scale(o.labour_duration / o.pseudo_duration), rest_length(m) {
+    : model(m),
+      options(o),
+      threads(o.threads),
+      pace(o.pace),
+      mean_scale(o.labour_duration / o.pseudo_duration),
+      scale(mean_scale),
+      rest_length(m) {
   total_steps = std::int64_t(std::ceil(o.pseudo_duration / o.time_step));
   dt = o.pseudo_duration / double(total_steps);
   masses = scaled_masses(model, dt, o.safety);
   for (const auto& b : model.body_forces) body_mass.push_back(fem::lumped_mass(model, b.regions));
   move_mass_of_ties();
-  for (const double m0 : masses.unscaled) drag_mass.push_back(dt * o.drag / scale * m0);
   start_state();
   make_inverse_masses();
+  describe_nodes();
   make_elements();
   make_contact();
-  // The rest length moves with time constants of seconds of labour: every half second is often enough.
-  retraction_every = std::max(1, int(0.5 / (dt * scale)));
   keep();
 }
 
 void Explicit::Impl::start_state() {
   state.x = model.mesh.nodes;
+  state.labour_per_pseudo = scale;
   state.v.assign(state.x.size(), Vec3::Zero());
   state.hinge_angle.assign(model.hinges.size(), 0.0);
   state.hinge_rate.assign(model.hinges.size(), 0.0);
   external_force.assign(state.x.size(), Vec3::Zero());
   contact_impulse.assign(state.x.size(), Vec3::Zero());
-  v_before = v_free = state.v;
+  v_before = v_free = lift = state.v;
   rate_before = rate_free = state.hinge_rate;
   sums.resize((state.x.size() + node_chunk - 1) / node_chunk);
   touched_sums.resize(sums.size());
@@ -55,31 +60,35 @@ void Explicit::Impl::move_mass_of_ties() {
   }
 }
 
+/// Drag in pseudo-time follows the pace, and with it all masses that carry it.
 void Explicit::Impl::make_inverse_masses() {
   constrained = fem::constrained_axes(model);
-  inverse_mass.assign(state.x.size(), Vec3::Zero());
-  inverse_mass_blocked.assign(state.x.size(), Vec3::Zero());
-  for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+  const std::size_t n = state.x.size();
+  drag_mass.resize(n);
+  for (std::size_t i = 0; i < n; ++i) drag_mass[i] = dt * options.drag / scale * masses.unscaled[i];
+  inverse_mass.assign(n, Vec3::Zero());
+  inverse_mass_blocked.assign(n, Vec3::Zero());
+  carry.assign(n, 0), pull.assign(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
     if (masses.scaled[i] <= 0) continue;  // nodes of rigid parts only
     for (int k = 0; k < 3; ++k) inverse_mass[i][k] = (constrained[i] >> k) & 1 ? 0 : 1 / dragged_mass(i);
+    carry[i] = masses.scaled[i] / dragged_mass(i), pull[i] = dt / dragged_mass(i);
     if (!model.blocked_direction.empty() && constrained[i] == fem::Blocked::none)
       inverse_mass_blocked[i] = model.blocked_direction[i] / std::sqrt(dragged_mass(i));
   }
   for (const auto& h : model.hinges) {
-    for (const auto n : h.nodes) inverse_mass[n].setZero(), inverse_mass_blocked[n].setZero();
+    for (const auto i : h.nodes) inverse_mass[i].setZero(), inverse_mass_blocked[i].setZero();
   }
-  describe_nodes();
 }
 
 void Explicit::Impl::describe_nodes() {
   const std::size_t n = state.x.size();
-  traits.assign(n, 0), carry.assign(n, 0), pull.assign(n, 0);
+  traits.assign(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
     if (inverse_mass[i].isZero()) {
       traits[i] = fixed;
       continue;
     }
-    carry[i] = masses.scaled[i] / dragged_mass(i), pull[i] = dt / dragged_mass(i);
     if (!inverse_mass_blocked[i].isZero() || inverse_mass[i].minCoeff() == 0) traits[i] = held;
   }
   for (const auto& load : model.pressures) {
@@ -96,11 +105,16 @@ void Explicit::Impl::describe_nodes() {
   }
 }
 
+void Explicit::Impl::make_materials() {
+  materials.clear();
+  for (const auto& r : model.regions) materials.push_back(kernel_material(r, dt * scale));
+}
+
 void Explicit::Impl::make_elements() {
   blocks = fem::make_blocks(model, block_count);
   reports.resize(blocks.size());
   nodal_pressure = std::make_unique<fem::NodalPressure>(model, blocks);
-  for (const auto& r : model.regions) materials.push_back(kernel_material(r, dt * scale));
+  make_materials();
   std::vector<std::int32_t> count(state.x.size() + 1, 0);
   for (const auto& b : blocks) {
     for (const auto n : b.nodes) ++count[std::size_t(n) + 1];
@@ -135,6 +149,20 @@ void Explicit::Impl::find_retracting() {
   set_rest_shape();  // as a restored run does, rounding included
 }
 
+std::vector<double> Explicit::Impl::hinge_inverse_inertias() const {
+  std::vector<double> inverse;
+  for (const auto& h : model.hinges) inverse.push_back(1 / dragged_inertia(h));
+  return inverse;
+}
+
+/// All that depends on the time scaling. Velocities stay: a change of pace is no impulse.
+void Explicit::Impl::take_pace() {
+  scale = state.labour_per_pseudo = mean_scale * pace.factor();
+  make_inverse_masses();
+  make_materials();
+  contact->weigh(inverse_mass, inverse_mass_blocked, hinge_inverse_inertias());
+}
+
 void Explicit::Impl::make_contact() {
   std::vector<contact::Surface> surfaces;
   for (const auto& s : model.contact_surfaces) surfaces.emplace_back(s.name, s.triangles, model.mesh.nodes);
@@ -142,9 +170,10 @@ void Explicit::Impl::make_contact() {
   for (const auto& p : model.contact_pairs) pairs.push_back({p.a, p.b, p.friction});
   std::vector<std::int16_t> hinge_of(state.x.size(), -1);
   std::vector<contact::HingeBody> hinges;
+  const auto inertias = hinge_inverse_inertias();
   for (std::size_t h = 0; h < model.hinges.size(); ++h) {
     for (const auto n : model.hinges[h].nodes) hinge_of[n] = std::int16_t(h);
-    hinges.push_back({model.hinges[h].point, model.hinges[h].axis, 1 / dragged_inertia(model.hinges[h])});
+    hinges.push_back({model.hinges[h].point, model.hinges[h].axis, inertias[h]});
   }
   contact::Options o;
   o.sweeps = options.contact_sweeps;

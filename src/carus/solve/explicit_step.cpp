@@ -13,7 +13,10 @@ namespace carus::solve {
 
 namespace {
 
-constexpr int loads_every = 4;  // steps: surfaces turn slowly against the step
+constexpr int loads_every = 4;            // steps: surfaces turn slowly against the step
+constexpr double retraction_every = 0.5;  // [s of labour]: its time constants are seconds
+constexpr int judge_pace_every = 64;      // steps: velocities have followed the last change by then
+constexpr int look_at_energy_every = 4 * judge_pace_every;
 constexpr int sample_contact_every =
     7;  // steps, for the mean contact force between two observations; no multiple of another rhythm
 
@@ -47,7 +50,8 @@ void Explicit::Impl::set_rest_shape() {
 void Explicit::Impl::retract(double t) {
   const Stopwatch watch(seconds[loads]);
   const auto before = rest_length.rings();
-  rest_length.advance(state.x, t, retraction_every * dt * scale);
+  rest_length.advance(state.x, t, t - retracted_at);
+  retracted_at = t;
   if (rest_length.rings() == before) return;
   const double energy = retracting_energy();
   set_rest_shape();
@@ -95,6 +99,22 @@ void Explicit::Impl::element_forces() {
       if (report.worst_element >= 0) reports[i].worst_element = report.worst_element;
     }
   });
+}
+
+/// No pressure changes noticeably in the next `span` [s of labour].
+bool Explicit::Impl::loads_stand(double span) const {
+  constexpr double noticeable = 0.01;
+  return std::all_of(model.pressures.begin(), model.pressures.end(), [&](const fem::PressureLoad& load) {
+    const double now = load.pressure(state.time), then = load.pressure(state.time + span);
+    return std::abs(then - now) <= noticeable * std::max(std::abs(now), std::abs(then));
+  });
+}
+
+/// After the elements, whose pressures the stored energy wants; so a resumed run judges as an uninterrupted one.
+void Explicit::Impl::judge_pace() {
+  const Stopwatch watch(seconds[loads]);
+  if (state.step % look_at_energy_every == 0) internal_energy = stored();
+  if (pace.judge(kinetic(), internal_energy, loads_stand(2 * judge_pace_every * dt * scale))) take_pace();
 }
 
 // Nodes that nothing touches move at once; the others wait for the contact solve in between.
@@ -172,7 +192,7 @@ void Explicit::Impl::carry_ties() {
 
 /// Imposed velocities, v = (x(t + dt) - x)/dt, and the work of what imposes them: r = m dv/dt + drag m0 v - f.
 void Explicit::Impl::impose_motions() {
-  const double t = double(state.step + 1) * dt * scale;
+  const double t = state.time + dt * scale;
   for (const auto& motion : model.motions) {
     for (const auto n : motion.nodes) {
       const Vec3 wanted = (fem::placed(motion, model.mesh.nodes[n], t) - state.x[n]) / dt;
@@ -201,6 +221,7 @@ void Explicit::Impl::solve_contact() {
   const Stopwatch watch(seconds[contact_solve]);
   turn_hinges_freely();
   contact->solve(state.v, state.hinge_rate);
+  contact->part_penetrated(state.v, lift);
   for (std::size_t h = 0; h < model.hinges.size(); ++h) {
     const double mean = 0.5 * (state.hinge_rate[h] + rate_before[h]);
     work.contact += dragged_inertia(model.hinges[h]) * (state.hinge_rate[h] - rate_free[h]) * mean;
@@ -246,6 +267,18 @@ void Explicit::Impl::move_node(std::size_t i, const Vec3& before, const Vec3& fr
   state.x[i] += dt * v;
 }
 
+/// A displacement without momentum. What it does against the forces on the node (all of them: m dv + dt drag m0 v*) is
+/// contact's work.
+void Explicit::Impl::lift_node(std::size_t i, NodeSums& s) {
+  Vec3& u = lift[i];
+  if (u.isZero(0)) return;
+  s.contact -= u.dot(dragged_mass(i) * v_free[i] - masses.scaled[i] * v_before[i]);
+  if (traits[i] & loaded) s.external += dt * external_force[i].dot(u);
+  s.max_speed2 = std::max(s.max_speed2, (state.v[i] + u).squaredNorm());
+  state.x[i] += dt * u;
+  u.setZero();
+}
+
 void Explicit::Impl::move_touched() {
   const Stopwatch watch(seconds[nodes]);
   parallel::for_chunks(touched.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
@@ -253,6 +286,7 @@ void Explicit::Impl::move_touched() {
     for (std::size_t k = b; k < e; ++k) {
       const auto i = std::size_t(touched[k]);
       move_node(i, v_before[i], v_free[i], s);
+      lift_node(i, s);
     }
   });
   turn_hinges();
@@ -266,7 +300,7 @@ void Explicit::Impl::move_touched() {
   max_speed = std::sqrt(speed2);
   contact->moved(dt * max_speed);
   ++state.step;
-  state.time = double(state.step) * dt * scale;
+  state.time += dt * scale;
 }
 
 void Explicit::Impl::turn_hinges() {
@@ -284,12 +318,13 @@ void Explicit::Impl::turn_hinges() {
 }
 
 void Explicit::Impl::step() {
-  const double t = double(state.step) * dt * scale;
-  if (rest_length.active() && state.step % retraction_every == 0) retract(t);
+  const double t = state.time;
+  if (rest_length.active() && t - retracted_at >= retraction_every) retract(t);
   if (loads_due || state.step % loads_every == 0) apply_loads(t);
   loads_due = false;
   element_forces();
   check();
+  if (pace.varies() && state.step % judge_pace_every == 0) judge_pace();
   find_contacts();
   predict();
   carry_ties();

@@ -115,7 +115,7 @@ TEST_F(PackedFrames, OfAnotherMeshAreLeftOut) {
   auto model = test::fetus_of_boxes();
   test::add_box(model, "other", "other", {1, 1, 1}, {2, 2, 2}, 1);
   const observe::Strain strain(model.mesh);
-  results::Frames other(folder / "other", model, strain, 1);
+  results::Frames other(folder / "other", model, strain);
   fem::State state;
   state.x = model.mesh.nodes, state.v.assign(state.x.size(), Vec3::Zero());
   other.write(state, {});

@@ -299,11 +299,14 @@ TEST(Scenario, ShippedScenariosDifferOnlyInWhatTheyName) {
 }
 
 TEST(Scenario, ExplicitOptionsApplyTheMultipliers) {
-  const auto o = explicit_options(
-      parse("", "s.yaml",
-            {"numerics.drag_factor=2", "numerics.pseudo_time_factor=3", "numerics.drag=100 1/s", "contact.sweeps=7"}));
+  const auto o =
+      explicit_options(parse("", "s.yaml",
+                             {"numerics.drag_factor=2", "numerics.pseudo_time_factor=3", "numerics.drag=100 1/s",
+                              "contact.sweeps=7", "numerics.pace.kinetic_ratio=0.09", "numerics.pace.fastest=4"}));
   EXPECT_DOUBLE_EQ(o.drag, 200);
   EXPECT_DOUBLE_EQ(o.pseudo_duration, 6);
+  EXPECT_DOUBLE_EQ(o.pace.kinetic_ratio, 0.01);  // a third of the speed
+  EXPECT_DOUBLE_EQ(o.pace.fastest, 4);
   EXPECT_EQ(o.contact_sweeps, 7);
 }
 

@@ -157,8 +157,16 @@ ExplicitOptions hundredfold() {
   return o;
 }
 
-TEST(Explicit, RestoreContinuesBitForBit) {
+class Resumed : public testing::TestWithParam<double> {};
+
+/// At a pace that stays, and at one that changes on the way.
+TEST_P(Resumed, RestoreContinuesBitForBit) {
   const auto m = labouring();
+  const auto hundredfold = [] {
+    auto o = solve::hundredfold();
+    o.pace = {0.04, 1 / GetParam(), GetParam()};
+    return o;
+  };
   Explicit through(m, hundredfold());
   models::set(through, [&](fem::State& st) { throw_ball(m, st, {0.1, 0, -1}); });
   for (const double saved_at : {0.4, 1.0, 2.0, 3.0}) {  // before and after the muscle acts, before and in contact
@@ -181,6 +189,39 @@ TEST(Explicit, RestoreContinuesBitForBit) {
   }
   through.advance_to(4);
   EXPECT_LT(through.observe().rest_length_mean, 0.999);  // the ratchet acted
+  EXPECT_EQ(through.state().labour_per_pseudo != 100, GetParam() > 1);
+}
+INSTANTIATE_TEST_SUITE_P(Explicit, Resumed, testing::Values(1, 4));
+
+/// Two loads with a long rest between them: at a varying pace fewer steps lead to the same places.
+TEST(Explicit, APaceThatFollowsTheLabourChangesStepsNotPositions) {
+  auto m = models::of(shapes::box({0, 0, 0}, {0.1, 0.03, 0.03}, 8, 2, 2),
+                      {models::soft(material::Law::neo_hooke, shear, 0.4)});
+  models::block(m, fem::all, [](const Vec3& X) { return X.x() < 1e-9; });
+  m.regions[0].material.prony = {{0.3, 20.0}};
+  fem::PressureLoad load;
+  load.surface = models::facets(m.mesh, [](const Vec3& X) { return X.z() > 0.0299; });
+  load.pressure = [](double t) {
+    return 100 * std::clamp(std::min(t / 20, (100 - t) / 20), 0.0, 1.0) + (t > 300 ? 5 * std::min(t - 300, 20.0) : 0.0);
+  };
+  m.pressures = {load};
+  auto o = models::real_time(4, 2e-4);
+  o.labour_duration = 400, o.drag = 20000;
+  Explicit even(m, o);
+  o.pace = {0.04, 1, 4};
+  Explicit paced(m, o);
+  double furthest = 0;
+  for (double t = 10; t <= 400; t += 10) {
+    even.advance_to(t), paced.advance_to(t);
+    EXPECT_NEAR(paced.state().time, t, 0.1);
+    for (std::size_t i = 0; i < m.mesh.nodes.size(); ++i) {
+      const double moved = (even.state().x[i] - m.mesh.nodes[i]).norm();
+      furthest = std::max(furthest, moved);
+      EXPECT_NEAR((paced.state().x[i] - even.state().x[i]).norm(), 0, 2e-4) << t;
+    }
+  }
+  EXPECT_GT(furthest, 5e-3);
+  EXPECT_LT(paced.state().step, 0.9 * double(even.state().step));
 }
 
 /// A state saved before anything has moved the rest length: the first restore must not change a rounding.
