@@ -81,6 +81,8 @@ struct alignas(64) Constraint {
   double lever_node, lever_facet;  ///< axis.((p - o) x n) of the hinges
   Vec3 slip;                       ///< tangential impulse [N s]
   double lift;                     ///< impulse [N s] >= 0 that undoes the penetration, forgotten after the step
+  Vec3 from_foot;                  ///< x_node - sum w_k x_k when the foot was found
+  int looks;                       ///< since then
 };
 
 /// Frictionless or Coulomb contact between moving surfaces by impulses: find gaps, then projected Gauss-Seidel on
@@ -141,6 +143,7 @@ class Contact {
     std::int32_t node, vertex;  ///< global node, local vertex of its own surface
     std::int32_t triangle = -1;
     std::int32_t pass;
+    std::int32_t constraint = -1;  ///< the one of the last look, if its foot may serve again
     double impulse = 0;
     double sleeps_until = 0;  ///< travel of both its surfaces before which it cannot touch; less all the time: awake
   };
@@ -180,8 +183,9 @@ class Contact {
   bool through_the_wall(const Surface& wall, const Probe& probe, std::int32_t triangle) const;
   [[nodiscard]] double deepest(const Probe& probe, std::int32_t triangle) const;
   bool admissible(const Probe& probe, std::int32_t triangle) const;
-  [[nodiscard]] bool outside_edge(const Surface& s, std::int32_t triangle, const Vec3& w, const Vec3& d) const;
+  [[nodiscard]] int side_of_edge(const Probe& probe, const Vec3& w, const Vec3& d, const std::vector<Vec3>& x) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c, double& clearance) const;
+  bool foot_serves(Constraint& c, const std::vector<Vec3>& x) const;
   [[nodiscard]] Vec3 response(std::int32_t node, const Vec3& impulse) const {
     const Vec3& b = inverse_mass_blocked_[node];
     return inverse_mass_[node].cwiseProduct(impulse) - b.dot(impulse) * b;
@@ -193,7 +197,7 @@ class Contact {
   void rub(Constraint& c, std::vector<Vec3>& v) const;
   void sweep(int part, int number, std::vector<Vec3>& v, std::vector<double>& rate);
   void raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>& lift) const;
-  void raise_part(int part, const std::vector<Vec3>& v, std::vector<Vec3>& lift);
+  void raise_part(int part, int number, const std::vector<Vec3>& v, std::vector<Vec3>& lift);
 
   std::vector<Surface> surfaces_;
   std::vector<Pair> pairs_;

@@ -18,6 +18,10 @@ constexpr int normals_every = 8;      // steps, about: normals turn slowly again
 constexpr int renew_every = 400;      // steps at most, so that folds find their new partner
 constexpr int look_every = 10;        // steps, about: fewer cost looks, more hold constraints that do not touch
 constexpr double look_within = 8e-4;  // [m] of travel, both sides': so far the foot and its normal stay good
+constexpr double foot_holds = 1e-4;   // [m] of relative motion: on a radius of 1 cm the gap errs by 0.5 um
+constexpr int foot_lasts = 8;         // looks, so that normals do not grow old
+constexpr double touching = 1e-6;     // [m]: nearer than this to an edge, no direction is left
+constexpr double cos_folded = 0.5;    // 60 degrees: a fold this sharp is no smooth surface any more
 constexpr double awake = -std::numeric_limits<double>::infinity();
 
 Vec3 interpolate(const std::vector<Vec3>& x, const mesh::Triangle& t, const Vec3& w) {
@@ -42,6 +46,14 @@ bool close_to_edge(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& w, d
   const double sides[3] = {(c - b).squaredNorm(), (a - c).squaredNorm(), (b - a).squaredNorm()};  // opposite to a, b, c
   const double near2 = 4 * squared / area2;  // altitude_k = 2 area / side_k
   return w[0] * w[0] < near2 * sides[0] || w[1] * w[1] < near2 * sides[1] || w[2] * w[2] < near2 * sides[2];
+}
+
+/// Of facet t at its local vertex [rad].
+double angle_at(const Surface& s, std::int32_t t, std::int32_t vertex, const std::vector<Vec3>& x) {
+  const auto corner = std::find(s.local[t].begin(), s.local[t].end(), vertex) - s.local[t].begin();
+  const auto at = [&](std::ptrdiff_t k) -> const Vec3& { return x[s.triangles[t][std::size_t((corner + k) % 3)]]; };
+  const Vec3 a = at(1) - at(0), b = at(2) - at(0);
+  return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 }  // namespace
@@ -84,6 +96,7 @@ void Contact::weigh(const std::vector<Vec3>& inverse_mass, const std::vector<Vec
   inverse_mass_ = inverse_mass, inverse_mass_blocked_ = inverse_mass_blocked;
   for (std::size_t h = 0; h < hinges_.size(); ++h) hinges_[h].inverse_inertia = hinges[h];
   look_due_ = true;  // constraints hold responses and effective masses
+  for (Probe& p : probes_) p.constraint = -1;
 }
 
 bool Contact::admissible(const Probe& probe, std::int32_t triangle) const {
@@ -176,7 +189,7 @@ void Contact::begin_stretch(const std::vector<Vec3>& x) {
   }
   near_.clear();
   for (std::size_t i = 0; i < probes_.size(); ++i) {
-    probes_[i].sleeps_until = awake;
+    probes_[i].sleeps_until = awake, probes_[i].constraint = -1;
     if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
   }
 }
@@ -280,25 +293,41 @@ Contact::Foot Contact::follow(Probe& probe, const std::vector<Vec3>& x) const {
   return best;
 }
 
-/// The foot lies on an edge or corner between sides, and the node in front of one of them: there is no plane, only the
-/// edge. Behind all of them it is inside; a rim that is squeezed to a blade turns its sides away from each other, and
-/// what lies in front of one lies deep behind the other.
-bool Contact::outside_edge(const Surface& s, std::int32_t triangle, const Vec3& w, const Vec3& d) const {
-  if (w.minCoeff() > 0) return false;
-  const auto& v = s.local[triangle];
+/// Whether the foot lies on an edge or corner between sides, or on a fold that has become sharper than 60 degrees, and
+/// then on which side of the surface the node is: 1 outside, -1 inside, 0 if there is no such edge, or some facet there
+/// is no partner and may hide a nearer one. It follows from the sum of the unit normals of the facets that meet in the
+/// foot, at a corner weighted by their angles (Baerentzen and Aanaes 2005), and from no smoothed normal: a rim may be
+/// squeezed to a blade, a crease be sharper than a right angle, and then what is inside lies before one of its facets,
+/// too.
+int Contact::side_of_edge(const Probe& probe, const Vec3& w, const Vec3& d, const std::vector<Vec3>& x) const {
+  if (w.minCoeff() > 0) return 0;
+  const Surface& s = surfaces_[passes_[probe.pass].facets];
+  const auto& v = s.local[probe.triangle];
+  int carriers = 0;
   std::int32_t carrier = -1;
+  bool creased = true;
   for (int k = 0; k < 3; ++k) {
     if (w[k] <= 0) continue;
-    if (!s.on_crease(v[k])) return false;
-    carrier = v[k];
+    creased &= s.on_crease(v[k]);
+    carrier = v[k], ++carriers;
   }
-  const Vec3 own = normal_at(s, triangle, v, w);
-  bool sides = false, in_front = d.dot(own) > 0;
+  if (carriers == 1 && !creased) return 0;
+  const Vec3 facing = s.facet_normal[probe.triangle].normalized();
+  const Vec3 own = normal_at(s, probe.triangle, v, w);
+  bool sides = false, all_faced = true;
+  Vec3 outward = Vec3::Zero();
   for (auto q = s.around_begin[carrier]; q < s.around_begin[carrier + 1]; ++q) {
-    const Vec3 n = normal_at(s, s.around[std::size_t(q)], v, w);
-    sides |= n != own && !n.isZero(0), in_front |= d.dot(n) > 0;
+    const auto t = s.around[std::size_t(q)];
+    const Vec3 n = normal_at(s, t, v, w);
+    if (n.isZero(0)) continue;
+    const Vec3 normal = s.facet_normal[t].normalized();
+    sides |= (creased && n != own) || (carriers > 1 && normal.dot(facing) < cos_folded);
+    all_faced &= admissible(probe, t);
+    outward += (carriers > 1 ? 1 : angle_at(s, t, carrier, x)) * normal;
   }
-  return sides && in_front;
+  if (!sides) return 0;
+  if (outward.dot(d) > 0) return 1;
+  return all_faced ? -1 : 0;
 }
 
 /// `clearance`: how far node and facets must move towards each other, at least, before this can become a constraint.
@@ -330,8 +359,9 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c,
     return false;
   }
   double gap = along;
-  if (outside_edge(other, probe.triangle, w, d)) {
-    gap = d.norm(), n = d / gap;
+  if (const int side = side_of_edge(probe, w, d, x); side != 0 && d.squaredNorm() > touching * touching) {
+    // There is no plane, only the edge; in a crease each of its facets alone would let the node into the other.
+    gap = side * d.norm(), n = d / gap;
   } else {
     // The facets cut the corner of the smooth surface by the sagitta 1/2 sum w_k (x_k - p).n_k.
     double sagitta = 0;
@@ -353,9 +383,21 @@ bool Contact::constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c,
   clearance = 0;
   c.node = probe.node, c.facet = f, c.w = {w[0], w[1], w[2]}, c.n = n, c.gap = gap, c.friction = pass.friction;
   c.impulse = probe.impulse, c.slip = Vec3::Zero(), c.lift = 0;
+  c.from_foot = d, c.looks = 0;
   c.target = target(gap), c.shift = gap - n.dot(d);
   finish(c, x);
   return c.mass > 0;
+}
+
+/// Most of what a look finds is what the last one found. A constraint whose node and facet have hardly moved against
+/// each other keeps its foot, its normal and its responses; only the gap is new, along that normal.
+bool Contact::foot_serves(Constraint& c, const std::vector<Vec3>& x) const {
+  const Vec3 d = x[c.node] - (c.w[0] * x[c.facet[0]] + c.w[1] * x[c.facet[1]] + c.w[2] * x[c.facet[2]]);
+  if (++c.looks > foot_lasts || (d - c.from_foot).squaredNorm() > foot_holds * foot_holds) return false;
+  c.gap = c.n.dot(d) + c.shift;
+  c.target = target(c.gap);
+  if (c.friction > 0) c.slip.setZero();
+  return c.gap <= held_below_;
 }
 
 /// Least normal speed: what closes an open gap by the end of the step.
@@ -420,6 +462,14 @@ void Contact::constrain_chunk(std::size_t begin, std::size_t end, const std::vec
   double clearance = 0;
   for (std::size_t i = begin; i < end; ++i) {
     Probe& probe = probes_[std::size_t(near_[i])];
+    if (probe.constraint >= 0) {
+      c = constraints_[std::size_t(probe.constraint)];
+      if (foot_serves(c, x)) {
+        out.push_back(c);
+        continue;
+      }
+      probe.constraint = -1;
+    }
     const double so_far = travel(passes_[probe.pass]);
     if (probe.sleeps_until - so_far > held_below_) continue;
     if (constrain(probe, x, c, clearance)) c.probe = near_[i], out.push_back(c);
@@ -446,7 +496,10 @@ void Contact::gather_parts(const std::vector<Vec3>& x) {
   constraints_.resize(part_begin_.back());
   auto next = part_begin_;
   for (std::size_t k = 0; k < chunks; ++k) {
-    for (const Constraint& c : chunk_constraints_[k]) constraints_[next[std::size_t(c.part)]++] = c;
+    for (const Constraint& c : chunk_constraints_[k]) {
+      const auto at = next[std::size_t(c.part)]++;
+      constraints_[at] = c, probes_[std::size_t(c.probe)].constraint = std::int32_t(at);
+    }
   }
 }
 

@@ -10,6 +10,7 @@ namespace carus::contact {
 namespace {
 
 constexpr double least_near = 1e-5;  // [m]
+constexpr double rounding = 1e-6;    // [m]: penetrations that are none
 
 inline Vec3 relative(const Constraint& c, const std::vector<Vec3>& v) {
   return v[c.node] - (c.w[0] * v[c.facet[0]] + c.w[1] * v[c.facet[1]] + c.w[2] * v[c.facet[2]]);
@@ -87,10 +88,10 @@ void Contact::solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate) {
   }
 }
 
-/// One pair of `part_penetrated`. What bears a load holds the others' lift off.
+/// One pair of `part_penetrated`.
 void Contact::raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>& lift) const {
   double wanted_speed = 0;
-  if (c.gap < 0) {
+  if (c.gap < -rounding) {
     const double opening = std::max(0.0, c.n.dot(relative(c, v)));
     wanted_speed = std::clamp(-c.gap / dt_ - opening, 0.0, options_.correction_speed);
   }
@@ -102,20 +103,21 @@ void Contact::raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>
   for (int k = 0; k < 3; ++k) lift[c.facet[k]] += change * c.response[k + 1];
 }
 
-void Contact::raise_part(int part, const std::vector<Vec3>& v, std::vector<Vec3>& lift) {
+/// The first sweep takes apart what is penetrated; in the second what bears a load holds off their lift.
+void Contact::raise_part(int part, int number, const std::vector<Vec3>& v, std::vector<Vec3>& lift) {
   for (const auto i : live_[std::size_t(part)]) {
     Constraint& c = constraints_[std::size_t(i)];
-    if (c.impulse > 0 || c.gap < 0) raise(c, v, lift);
+    if (number == 0) c.lift = 0;
+    if (c.gap < -rounding || (number > 0 && c.impulse > 0)) raise(c, v, lift);
   }
 }
 
 void Contact::part_penetrated(const std::vector<Vec3>& v, std::vector<Vec3>& lift) {
   constexpr int sweeps = 2;  // what is left over waits for the next step
-  for (auto& live : live_)
-    for (const auto i : live) constraints_[std::size_t(i)].lift = 0;
   for (int number = 0; number < sweeps; ++number) {
-    parallel::for_chunks(parts, 1, [&](std::size_t part, std::size_t, std::size_t) { raise_part(int(part), v, lift); });
-    raise_part(parts, v, lift);
+    parallel::for_chunks(parts, 1,
+                         [&](std::size_t part, std::size_t, std::size_t) { raise_part(int(part), number, v, lift); });
+    raise_part(parts, number, v, lift);
   }
 }
 
