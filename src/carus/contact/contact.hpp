@@ -186,6 +186,7 @@ class Contact {
   [[nodiscard]] int side_of_edge(const Probe& probe, const Vec3& w, const Vec3& d, const std::vector<Vec3>& x) const;
   bool constrain(Probe& probe, const std::vector<Vec3>& x, Constraint& c, double& clearance) const;
   bool foot_serves(Constraint& c, const std::vector<Vec3>& x) const;
+  Vec3 update_gap(Constraint& c, const std::vector<Vec3>& x) const;
   [[nodiscard]] Vec3 response(std::int32_t node, const Vec3& impulse) const {
     const Vec3& b = inverse_mass_blocked_[node];
     return inverse_mass_[node].cwiseProduct(impulse) - b.dot(impulse) * b;

@@ -103,7 +103,7 @@ void Contact::raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>
   for (int k = 0; k < 3; ++k) lift[c.facet[k]] += change * c.response[k + 1];
 }
 
-/// The first sweep takes apart what is penetrated; in the second what bears a load holds off their lift.
+/// The first sweep takes apart what is penetrated; from the second on what bears a load holds off their lift.
 void Contact::raise_part(int part, int number, const std::vector<Vec3>& v, std::vector<Vec3>& lift) {
   for (const auto i : live_[std::size_t(part)]) {
     Constraint& c = constraints_[std::size_t(i)];
@@ -113,7 +113,7 @@ void Contact::raise_part(int part, int number, const std::vector<Vec3>& v, std::
 }
 
 void Contact::part_penetrated(const std::vector<Vec3>& v, std::vector<Vec3>& lift) {
-  constexpr int sweeps = 2;  // what is left over waits for the next step
+  const int sweeps = std::max(2, options_.sweeps - 1);  // what is left over waits for the next step
   for (int number = 0; number < sweeps; ++number) {
     parallel::for_chunks(parts, 1,
                          [&](std::size_t part, std::size_t, std::size_t) { raise_part(int(part), number, v, lift); });

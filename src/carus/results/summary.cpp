@@ -60,11 +60,19 @@ std::string retraction_law(const scenario::Retraction& r) {
   return fmt::format("ratchet, {:g} s, isometric strain {:g}", r.tau, r.isometric_strain);
 }
 
+/// How the time scaling follows the labour.
+std::string pace(const solve::PaceOptions& o) {
+  if (o.slowest == o.fastest) return "even";
+  return fmt::format("{:g} to {:g} times the mean, for kinetic/internal energy of {:g}", o.slowest, o.fastest,
+                     o.kinetic_ratio);
+}
+
 Json declared(const scenario::Scenario& s) {
   const auto o = scenario::explicit_options(s);
   return {{"resolution", scenario::name_of(s.resolution)},
           {"labour_duration_s", number(o.labour_duration)},
           {"pseudo_duration_s", number(o.pseudo_duration)},
+          {"pace", pace(o.pace)},
           {"drag_per_s", number(o.drag)},
           {"safety", number(o.safety)},
           {"max_node_speed_m_s", number(o.max_node_speed)},

@@ -45,7 +45,7 @@ struct Explicit::Impl {
   double dt;
   std::int64_t total_steps;
   Masses masses;
-  // Follows the pace: of the mass with its implicit drag, m + dt drag m0: M^-1 = D - b b^T. D per axis, 0 where
+  // Of the mass with its implicit drag, m + dt drag m0, which follows the pace: M^-1 = D - b b^T. D per axis, 0 where
   // blocked; b = t/sqrt(m) takes away a blocked direction t, 0 where there is none.
   std::vector<Vec3> inverse_mass, inverse_mass_blocked;
   std::vector<std::uint8_t> constrained;       // per node, Blocked bits

@@ -28,6 +28,7 @@ Explicit::Impl::Impl(const fem::Model& m, const ExplicitOptions& o)
   for (const auto& b : model.body_forces) body_mass.push_back(fem::lumped_mass(model, b.regions));
   move_mass_of_ties();
   start_state();
+  constrained = fem::constrained_axes(model);
   make_inverse_masses();
   describe_nodes();
   make_elements();
@@ -62,7 +63,6 @@ void Explicit::Impl::move_mass_of_ties() {
 
 /// Drag in pseudo-time follows the pace, and with it all masses that carry it.
 void Explicit::Impl::make_inverse_masses() {
-  constrained = fem::constrained_axes(model);
   const std::size_t n = state.x.size();
   drag_mass.resize(n);
   for (std::size_t i = 0; i < n; ++i) drag_mass[i] = dt * options.drag / scale * masses.unscaled[i];

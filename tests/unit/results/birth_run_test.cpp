@@ -45,16 +45,20 @@ TEST(BirthRun, DeclaresWhatThePaperDoesNotHave) {
   c.scenario.retraction.enabled = true, c.scenario.retraction.kind = fem::Retraction::Kind::ratchet;
   c.scenario.retraction.tau = 150, c.scenario.retraction.isometric_strain = 0.05;
   c.scenario.attachments.bed_lateral = 4.5e6;
+  c.scenario.numerics.pace_fastest = 4, c.scenario.numerics.pace_slowest = 0.5;
   c.run(folder / "with");
   auto j = nlohmann::json::parse(read_text(folder / "with" / "summary.json"))["declared"];
   EXPECT_EQ(j["relaxation"], "vaginal_canal 0.75 in 300 s");
   EXPECT_EQ(j["retraction_law"], "ratchet, 150 s, isometric strain 0.05");
   EXPECT_EQ(j["canal_bed_lateral_kpa_mm"], 4.5);
+  EXPECT_EQ(j["pace"], "0.5 to 4 times the mean, for kinetic/internal energy of 0.04");
+  c.scenario.numerics.pace_fastest = c.scenario.numerics.pace_slowest = 1;
   c.scenario.materials["vaginal_canal"].prony.clear(), c.scenario.retraction.enabled = false;
   c.run(folder / "without");
   j = nlohmann::json::parse(read_text(folder / "without" / "summary.json"))["declared"];
   EXPECT_EQ(j["relaxation"], "none");
   EXPECT_EQ(j["retraction_law"], "none");
+  EXPECT_EQ(j["pace"], "even");
 }
 
 /// All that a run leaves but wall times, checkpoint and log.

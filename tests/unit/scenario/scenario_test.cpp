@@ -138,6 +138,16 @@ output: {frames: 5 s}
       }));
 }
 
+TEST(Scenario, PaceHasItsBounds) {
+  EXPECT_EQ(
+      problems("numerics: {pace: {kinetic_ratio: 0, slowest: 2, fastest: 4 s, slowets: 1}}\n"),
+      (Messages{"s.yaml: numerics.pace.slowets: unknown key; did you mean numerics.pace.slowest?",
+                "s.yaml: numerics.pace.kinetic_ratio: \"0\" is out of range; allowed 1e-06 to 1; the default is "
+                "\"0.04\"",
+                "s.yaml: numerics.pace.slowest: \"2\" is out of range; allowed 0.01 to 1; the default is \"1\"",
+                "s.yaml: numerics.pace.fastest: \"4 s\" is not a number; allowed 1 to 100; the default is \"1\""}));
+}
+
 TEST(Scenario, LandmarksAreOfAVolumeAndNamedOnce) {
   EXPECT_EQ(
       problems("pelvis: {landmarks: [{name: coccyx_tip}, {name: promontory}, {name: coccyx_tip}]}\n"),
