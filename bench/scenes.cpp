@@ -17,7 +17,7 @@ fem::Model block(bool average_nodal_pressure) {
 }
 
 Kernel::Kernel(const fem::Model& model)
-    : blocks_(fem::make_blocks(model, 16)), material_(solve::kernel_material(model.regions[0], 0.02)) {
+    : blocks_(fem::make_blocks(model, 16)), material_(solve::kernel_material(model.regions[0])) {
   for (auto& b : blocks_) {
     for (std::size_t i = 0; i < b.nodes.size(); ++i) {
       const Vec3 x = 1.01 * model.mesh.nodes[b.nodes[i]];

@@ -24,8 +24,12 @@ struct Forces {
   fem::KernelReport report;
 };
 
-/// Forces at the positions x; blocks keep their history. No nodal averages.
+/// Forces at the positions x, with the past that the blocks have. No nodal averages.
 Forces element_forces(const fem::Model& model, std::vector<fem::Block>& blocks, const std::vector<Vec3>& x,
-                      fem::ElementForces kernel = fem::kernel().forces);
+                      const fem::Kernel& kernel = fem::kernel());
+
+/// The branches follow the stress at x, `dt` [s] after the last time. Returns what the kernel does [J].
+double relax(const fem::Model& model, std::vector<fem::Block>& blocks, const std::vector<Vec3>& x, double dt,
+             const fem::Kernel& kernel = fem::kernel());
 
 }  // namespace carus::models

@@ -12,14 +12,14 @@ namespace {
 constexpr double least_near = 1e-5;  // [m]
 constexpr double rounding = 1e-6;    // [m]: penetrations that are none
 
-inline Vec3 relative(const Constraint& c, const std::vector<Vec3>& v) {
+[[gnu::always_inline]] inline Vec3 relative(const Constraint& c, const std::vector<Vec3>& v) {
   return v[c.node] - (c.w[0] * v[c.facet[0]] + c.w[1] * v[c.facet[1]] + c.w[2] * v[c.facet[2]]);
 }
 
 }  // namespace
 
 /// An impulse along the normal acts on the node, its opposite on the facet.
-void Contact::push(const Constraint& c, double impulse, std::vector<Vec3>& v, std::vector<double>& rate) const {
+[[gnu::always_inline]] inline void Contact::push(const Constraint& c, double impulse, std::vector<Vec3>& v, std::vector<double>& rate) const {
   v[c.node] += impulse * c.response[0];
   for (int k = 0; k < 3; ++k) v[c.facet[k]] += impulse * c.response[k + 1];
   if (c.hinge_node >= 0) rate[c.hinge_node] += hinges_[c.hinge_node].inverse_inertia * c.lever_node * impulse;
@@ -27,13 +27,13 @@ void Contact::push(const Constraint& c, double impulse, std::vector<Vec3>& v, st
 }
 
 /// A tangential impulse; hinges feel the normal ones alone.
-void Contact::shear(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v) const {
+[[gnu::always_inline]] inline void Contact::shear(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v) const {
   v[c.node] += response(c.node, impulse);
   for (int k = 0; k < 3; ++k) v[c.facet[k]] -= c.w[k] * response(c.facet[k], impulse);
 }
 
 /// Coulomb: the tangential impulse that stops the slip, at most friction times the normal one.
-void Contact::rub(Constraint& c, std::vector<Vec3>& v) const {
+[[gnu::always_inline]] inline void Contact::rub(Constraint& c, std::vector<Vec3>& v) const {
   const Vec3 u = relative(c, v);
   Vec3 slip = c.slip - c.mass * (u - u.dot(c.n) * c.n);
   const double limit = double(c.friction) * c.impulse, size = slip.norm();
@@ -43,7 +43,7 @@ void Contact::rub(Constraint& c, std::vector<Vec3>& v) const {
 }
 
 /// Returns the normal speed it found.
-double Contact::relax(Constraint& c, std::vector<Vec3>& v, std::vector<double>& rate) const {
+[[gnu::always_inline]] inline double Contact::relax(Constraint& c, std::vector<Vec3>& v, std::vector<double>& rate) const {
   double speed = c.n.dot(relative(c, v));
   if (c.hinge_node >= 0) speed += rate[c.hinge_node] * c.lever_node;
   if (c.hinge_facet >= 0) speed -= rate[c.hinge_facet] * c.lever_facet;
@@ -89,7 +89,7 @@ void Contact::solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate) {
 }
 
 /// One pair of `part_penetrated`.
-void Contact::raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>& lift) const {
+[[gnu::always_inline]] inline void Contact::raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>& lift) const {
   double wanted_speed = 0;
   if (c.gap < -rounding) {
     const double opening = std::max(0.0, c.n.dot(relative(c, v)));

@@ -25,6 +25,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 bool small_strain(const Region& r) { return r.material.law == material::Law::hooke_small_strain; }
 bool fibrous(const Region& r) { return r.fibres && r.material.fibre_k1 > 0; }
 
+Mat3 green_lagrange(const Mat3& F) {
+  const Mat3 H = F - Mat3::Identity();
+  return 0.5 * (H + H.transpose() + H.transpose() * H);
+}
+
 std::vector<mesh::Tet> deformable(const Model& model) {
   std::vector<mesh::Tet> out;
   for (std::size_t e = 0; e < model.mesh.tets.size(); ++e)
@@ -117,18 +122,25 @@ void Elastic::begin_step(double dt) {
   }
 }
 
-void Elastic::end_step(const std::vector<Vec3>& x) {
-  parallel::for_chunks(elements_.size(), chunk, [&](std::size_t begin, std::size_t end, std::size_t) {
+double Elastic::end_step(const std::vector<Vec3>& x) {
+  return parallel::sum_chunks(elements_.size(), chunk, [&](std::size_t begin, std::size_t end) {
+    double energy = 0;
     for (std::size_t e = begin; e < end; ++e) {
       if (elements_[e].past < 0) continue;
       Past& past = past_[std::size_t(elements_[e].past)];
       const Mat3 F = gradient(e, x);
-      const Mat3 S = F.inverse() * isochoric_stress(e, F);
+      const Mat3 S = F.inverse() * isochoric_stress(e, F), E = green_lagrange(F);
       const auto& terms = prony_[std::size_t(regions_[e])];
-      for (std::size_t k = 0; k < terms.size(); ++k)
+      Mat3 taken = Mat3::Zero();  // twice its mean over the step
+      for (std::size_t k = 0; k < terms.size(); ++k) {
+        taken += terms[k].g * (past.s_iso - past.h[k]);
         past.h[k] = terms[k].decay * past.h[k] + terms[k].ramp * (S - past.s_iso);
-      past.s_iso = S;
+        taken += terms[k].g * (S - past.h[k]);
+      }
+      energy += 0.5 * volume_[e] * taken.cwiseProduct(E - past.strain).sum();
+      past.s_iso = S, past.strain = E;
     }
+    return energy;
   });
 }
 
@@ -167,9 +179,7 @@ double Elastic::density(std::size_t e, const Mat3& F, bool with_past) const {
   if (fibrous(region)) w += fibre(model_, elements_[e].element).energy(f);
   if (!with_past || elements_[e].past < 0) return w + volumetric;
   const Mat3& S = past_[std::size_t(elements_[e].past)].now;
-  const Mat3 H = F - Mat3::Identity();
-  const Mat3 E = 0.5 * (H + H.transpose() + H.transpose() * H);
-  return relaxed_[regions_[e]] * w + S.cwiseProduct(E).sum() + volumetric;
+  return relaxed_[regions_[e]] * w + S.cwiseProduct(green_lagrange(F)).sum() + volumetric;
 }
 
 double Elastic::energy(const std::vector<Vec3>& x) {
@@ -361,21 +371,21 @@ Elastic::Volumes Elastic::volumes(const std::vector<Vec3>& x) const {
   return v;
 }
 
-std::size_t Elastic::history_size() const { return past_.size() * 45; }
+std::size_t Elastic::history_size() const { return past_.size() * 54; }
 
 std::vector<double> Elastic::save() const {
   std::vector<double> out;
   out.reserve(history_size());
   for (const Past& p : past_) {
-    out.insert(out.end(), p.s_iso.data(), p.s_iso.data() + 9);
-    for (const Mat3& h : p.h) out.insert(out.end(), h.data(), h.data() + 9);
+    for (const Mat3* m : {&p.s_iso, &p.strain, &p.h[0], &p.h[1], &p.h[2], &p.h[3]})
+      out.insert(out.end(), m->data(), m->data() + 9);
   }
   return out;
 }
 
 void Elastic::load(const double* saved) {
   for (Past& p : past_) {
-    for (Mat3* m : {&p.s_iso, &p.h[0], &p.h[1], &p.h[2], &p.h[3]}) {
+    for (Mat3* m : {&p.s_iso, &p.strain, &p.h[0], &p.h[1], &p.h[2], &p.h[3]}) {
       *m = Eigen::Map<const Mat3>(saved);
       saved += 9;
     }

@@ -22,8 +22,9 @@ class Elastic {
 
   /// Begins a step of dt [s of labour] from the history so far.
   void begin_step(double dt);
-  /// Ends it at x: the history moves on.
-  void end_step(const std::vector<Vec3>& x);
+  /// Ends it at x: the history moves on. Returns what the instantaneous law counts as stored in this step and relaxation
+  /// did not let be put in: (S - S_relaxed):dE, the stresses' mean over the step [J].
+  double end_step(const std::vector<Vec3>& x);
   /// The stress-free shape of the retracting elements: F_e = F F_a^-1.
   void set_rest_length(const RestLength& rest_length);
 
@@ -60,6 +61,7 @@ class Elastic {
   };
   struct Past {
     Mat3 s_iso = Mat3::Zero();
+    Mat3 strain = Mat3::Zero();  ///< Green-Lagrange, with s_iso
     Mat3 h[4] = {Mat3::Zero(), Mat3::Zero(), Mat3::Zero(), Mat3::Zero()};
     Mat3 now = Mat3::Zero();  ///< S_past of the step under way
   };

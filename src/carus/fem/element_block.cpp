@@ -78,7 +78,7 @@ Block make_block(const Model& model, Elements elements, std::vector<std::int32_t
     block.runs.push_back({region, first, block.batches.size()});
     block.history_begin.push_back(block.history.size());
     const auto terms = model.regions[region].material.prony.size();
-    block.history.resize(block.history.size() + terms * (block.batches.size() - first));
+    if (terms > 0) block.history.resize(block.history.size() + (first_branch + terms) * (block.batches.size() - first));
   }
   for (const auto n : block.nodes) local[n] = -1;
   block.x.resize(block.nodes.size());

@@ -27,18 +27,20 @@ struct alignas(64) Batch {
   std::int32_t element[lanes];  ///< element in the model
 };
 
-/// History of one batch: last isochoric second Piola-Kirchhoff stress and the Maxwell overstresses, in Pa.
-struct alignas(64) BatchHistory {
-  float s_iso[6][lanes];
-  float h[6][lanes];
+/// Second Piola-Kirchhoff stresses of one batch [Pa]: xx, yy, zz, yz, xz, xy.
+struct alignas(64) BatchStress {
+  float row[6][lanes];
 };
+/// The past of a batch that relaxes, one BatchStress after the other: what relaxation has taken from the instantaneous
+/// stress (all that the forces read), the isochoric stress at the last update, and the branches' stresses.
+inline constexpr int relaxed_stress = 0, last_stress = 1, first_branch = 2;
 
 /// Constants of one region as the kernel wants them.
 struct KernelMaterial {
   material::Law law;
   float c10, c01, bulk, mu, k1, k2;
   int prony_terms = 0;
-  material::PronyFactors prony[max_prony_terms] = {};
+  material::PronyFactors prony[max_prony_terms] = {};  ///< over the time since the last update
   bool fibres = false;
 };
 
@@ -50,14 +52,20 @@ struct KernelReport {
 };
 
 /// Adds the nodal forces -dW/dx of `n` batches to f. `pressure` (per local pressure node, or null) replaces dU/dJ by
-/// its nodal average. `history` has prony_terms entries per batch. No allocation; thread-safe over distinct f.
+/// its nodal average. `history`: first_branch + prony_terms entries per batch that relaxes. No allocation; thread-safe
+/// over distinct f.
 using ElementForces = KernelReport (*)(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x,
-                                       Float4* f, const float* pressure, BatchHistory* history);
+                                       Float4* f, const float* pressure, const BatchStress* history);
+/// Lets the Maxwell branches follow the stress at x. Between two updates what relaxation has taken, D, stands; so the
+/// forces are those of the potential W - D:E, which this changes. Returns by how much it rises [J].
+using ElementRelaxation = double (*)(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x,
+                                     BatchStress* history);
 /// Adds the current volume of each element, a quarter to each node.
 using ElementVolumes = void (*)(const Batch* batches, std::size_t n, const Float4* x, float* current);
 
 struct Kernel {
   ElementForces forces;
+  ElementRelaxation relax;
   ElementVolumes volumes;
   const char* name;  ///< instruction set
 };
@@ -74,7 +82,7 @@ struct Block {
   std::vector<std::int32_t> nodes;  ///< global indices of the local nodes
   std::vector<Batch> batches;
   std::vector<Run> runs;
-  std::vector<BatchHistory> history;
+  std::vector<BatchStress> history;
   std::vector<std::size_t> history_begin;  ///< per run
   std::vector<Float4> x, f;
   std::vector<std::int32_t> pressure_begin;  ///< per run: first slot of its nodes in `pressure`, -1 where not averaged

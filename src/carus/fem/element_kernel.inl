@@ -149,24 +149,26 @@ inline void store(const Stress& s, float (&rows)[6][lanes], int first) {
   for (int k = 0; k < 6; ++k) *reinterpret_cast<Lanes*>(rows[k] + first) = *from[k];
 }
 
-/// Maxwell branches on the isochoric second Piola-Kirchhoff stress; P holds the instantaneous isochoric stress and is
-/// relaxed.
-inline void relax(const Tensor& F, const Tensor& cof, const Lanes& J, const KernelMaterial& m, BatchHistory* history,
-                  int first, Tensor& P) {
-  const Stress now = material::second_piola(cof, J, P);
-  Stress S = now;
-  for (int term = 0; term < m.prony_terms; ++term) {
-    Stress h = load(history[term].h, first);
-    material::relax(m.prony[term], now, load(history[term].s_iso, first), h, S);
-    store(h, history[term].h, first);
-    store(now, history[term].s_iso, first);
+/// The stress that the law and the fibres give at once, without the volumetric part.
+template <bool fibres, class Law>
+inline Tensor isochoric(const Law& law, const KernelMaterial& m, const Batch& b, int first, const Tensor& F,
+                        const Lanes& J1) {
+  Tensor P;
+  law.first_piola(F, J1, Lanes{}, P);
+  if constexpr (fibres) {
+    Tensor along;
+    const material::Vec3T<Lanes> a{load(b.fibre[0] + first), load(b.fibre[1] + first), load(b.fibre[2] + first)};
+    // Fibres measure the true volume, whatever the matrix does.
+    material::Fibre<Lanes>(all(m.k1), all(m.k2), a)
+        .first_piola(F, material::FiniteVolume<Lanes>::volume_strain(F), Lanes{}, along);
+    P += along;
   }
-  P = material::first_piola_of(F, S);
+  return P;
 }
 
 template <bool fibres, bool prony, class Law>
 inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x,
-                        Float4* f, const float* pressure, BatchHistory* history) {
+                        Float4* f, const float* pressure, const BatchStress* history) {
   KernelReport report;
   Lanes min_J = all(1e30f);
   for (std::size_t part = 0; part < n * (lanes / width); ++part) {
@@ -177,21 +179,14 @@ inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, con
     const Lanes J1 = Law::volume_strain(F);
     const Lanes p = pressure ? nodal_mean(pressure, b, first) : Law::volume_pressure(all(m.bulk), J1);
     Tensor P;
-    if constexpr (fibres || prony) {
-      law.first_piola(F, J1, Lanes{}, P);
-      if constexpr (fibres) {
-        Tensor along;
-        const material::Vec3T<Lanes> a{load(b.fibre[0] + first), load(b.fibre[1] + first), load(b.fibre[2] + first)};
-        // Fibres measure the true volume, whatever the matrix does.
-        material::Fibre<Lanes>(all(m.k1), all(m.k2), a)
-            .first_piola(F, material::FiniteVolume<Lanes>::volume_strain(F), Lanes{}, along);
-        P += along;
-      }
-      const Tensor cof = Law::volume_gradient(F);
-      if constexpr (prony) relax(F, cof, J1 + 1.0f, m, history + e * std::size_t(m.prony_terms), first, P);
-      P += cof * p;
+    if constexpr (fibres) {
+      P = isochoric<true>(law, m, b, first, F, J1) + Law::volume_gradient(F) * p;
     } else {
       law.first_piola(F, J1, p, P);
+    }
+    if constexpr (prony) {
+      const BatchStress* past = history + e * std::size_t(first_branch + m.prony_terms);
+      P = P - material::first_piola_of(F, load(past[relaxed_stress].row, first));
     }
     add_forces(b, first, P, f);
     min_J = J1 < min_J ? J1 : min_J;
@@ -208,9 +203,40 @@ inline KernelReport run(const Law& law, const Batch* batches, std::size_t n, con
   return report;
 }
 
+/// Maxwell branches on the isochoric second Piola-Kirchhoff stress.
+template <bool fibres, class Law>
+inline double run_relaxation(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m,
+                             const Float4* x, BatchStress* history) {
+  double energy = 0;
+  for (std::size_t part = 0; part < n * (lanes / width); ++part) {
+    const std::size_t e = part / (lanes / width);
+    const int first = int(part % (lanes / width)) * width;
+    const Batch& b = batches[e];
+    BatchStress* past = history + e * std::size_t(first_branch + m.prony_terms);
+    const Tensor F = deformation_gradient(b, first, x);
+    const Lanes J1 = Law::volume_strain(F);
+    const Stress now =
+        material::second_piola(Law::volume_gradient(F), J1 + 1.0f, isochoric<fibres>(law, m, b, first, F, J1));
+    const Stress before = load(past[last_stress].row, first);
+    Stress left = now;
+    for (int term = 0; term < m.prony_terms; ++term) {
+      auto& branch = past[first_branch + term].row;
+      Stress h = load(branch, first);
+      material::relax(m.prony[term], now, before, h, left);
+      store(h, branch, first);
+    }
+    const Stress taken = material::difference(now, left);
+    const Stress fall = material::difference(load(past[relaxed_stress].row, first), taken);
+    store(now, past[last_stress].row, first), store(taken, past[relaxed_stress].row, first);
+    const Lanes rise = load(b.volume + first) * 0.5f * material::contract(fall, material::right_strain(F));
+    for (int l = 0; l < width; ++l) energy += double(rise[l]);
+  }
+  return energy;
+}
+
 template <class Law>
 inline KernelReport choose(const Law& law, const Batch* batches, std::size_t n, const KernelMaterial& m,
-                           const Float4* x, Float4* f, const float* pressure, BatchHistory* history) {
+                           const Float4* x, Float4* f, const float* pressure, const BatchStress* history) {
   if (m.fibres) {
     return m.prony_terms ? run<true, true>(law, batches, n, m, x, f, pressure, history)
                          : run<true, false>(law, batches, n, m, x, f, pressure, history);
@@ -219,19 +245,31 @@ inline KernelReport choose(const Law& law, const Batch* batches, std::size_t n, 
                        : run<false, false>(law, batches, n, m, x, f, pressure, history);
 }
 
-KernelReport forces(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, Float4* f,
-                    const float* pressure, BatchHistory* history) {
+template <class Visit>
+inline auto with_law(const KernelMaterial& m, Visit&& visit) {
   switch (m.law) {
     case material::Law::neo_hooke:
-      return choose(material::NeoHooke<Lanes>(all(m.c10)), batches, n, m, x, f, pressure, history);
+      return visit(material::NeoHooke<Lanes>(all(m.c10)));
     case material::Law::mooney_rivlin:
-      return choose(material::MooneyRivlin<Lanes>(all(m.c10), all(m.c01)), batches, n, m, x, f, pressure, history);
+      return visit(material::MooneyRivlin<Lanes>(all(m.c10), all(m.c01)));
     case material::Law::hooke_corotated:
-      return choose(material::HookeCorotated<Lanes>(all(m.mu)), batches, n, m, x, f, pressure, history);
+      return visit(material::HookeCorotated<Lanes>(all(m.mu)));
     case material::Law::hooke_small_strain:
-      return choose(material::HookeSmallStrain<Lanes>(all(m.mu)), batches, n, m, x, f, pressure, history);
+      return visit(material::HookeSmallStrain<Lanes>(all(m.mu)));
   }
   CARUS_ASSERT(false);
+}
+
+KernelReport forces(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, Float4* f,
+                    const float* pressure, const BatchStress* history) {
+  return with_law(m, [&](const auto& law) { return choose(law, batches, n, m, x, f, pressure, history); });
+}
+
+double relax(const Batch* batches, std::size_t n, const KernelMaterial& m, const Float4* x, BatchStress* history) {
+  return with_law(m, [&](const auto& law) {
+    return m.fibres ? run_relaxation<true>(law, batches, n, m, x, history)
+                    : run_relaxation<false>(law, batches, n, m, x, history);
+  });
 }
 
 /// V = det Ds / 6: neither the rest shape is fetched for it, nor does an active strain change it.

@@ -88,7 +88,8 @@ std::vector<std::string> column_names(const GeneralModel& m) {
     }
   }
   for (const char* name :
-       {"kinetic_j", "internal_j", "external_work_j", "contact_work_j", "damping_work_j", "least_gap_mm", "min_J"})
+       {"kinetic_j", "internal_j", "external_work_j", "contact_work_j", "damping_work_j", "relaxation_work_j",
+        "least_gap_mm", "min_J"})
     names.emplace_back(name);
   return names;
 }
@@ -201,7 +202,8 @@ class Run {
     }
     const double gap = std::isfinite(seen.least_gap) ? 1e3 * seen.least_gap : s_.contact_search * 1e3;
     for (const double v :
-         {seen.kinetic, seen.internal, seen.external_work, seen.contact_work, seen.damping_work, gap, seen.min_J})
+         {seen.kinetic, seen.internal, seen.external_work, seen.contact_work, seen.damping_work, seen.relaxation_work, gap,
+          seen.min_J})
       row.push_back(v);
     curves_->append(row);
     inverted_ = seen.inverted;
@@ -239,8 +241,8 @@ class Run {
     if (!table.rows.empty()) {
       for (std::size_t k = 0; k < table.names.size(); ++k) j["end"][table.names[k]] = table.rows.back()[k];
       const auto last = table.rows.size() - 1;
-      const double in =
-          table.at(last, "external_work_j") + table.at(last, "contact_work_j") - table.at(last, "damping_work_j");
+      const double in = table.at(last, "external_work_j") + table.at(last, "contact_work_j") +
+                        table.at(last, "relaxation_work_j") - table.at(last, "damping_work_j");
       const double stored = table.at(last, "kinetic_j") + table.at(last, "internal_j");
       const double first = table.at(0, "kinetic_j") + table.at(0, "internal_j");
       const double most = std::max({std::abs(table.at(last, "external_work_j")), stored, first});

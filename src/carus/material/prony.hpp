@@ -17,7 +17,7 @@ struct Sym3T {
   T xx, yy, zz, yz, xz, xy;
 };
 
-/// Factors of one branch for one time step, computed once per step for all elements.
+/// Factors of one branch for one time step, computed once for all elements.
 struct PronyFactors {
   double g;      ///< share of the instantaneous stiffness
   double decay;  ///< exp(-dt/tau)
@@ -43,6 +43,16 @@ CARUS_INLINE void relax(const PronyFactors& branch, const Sym3T<T>& now, const S
   };
   component(&Sym3T<T>::xx), component(&Sym3T<T>::yy), component(&Sym3T<T>::zz);
   component(&Sym3T<T>::yz), component(&Sym3T<T>::xz), component(&Sym3T<T>::xy);
+}
+
+template <class T>
+CARUS_INLINE Sym3T<T> difference(const Sym3T<T>& a, const Sym3T<T>& b) {
+  return {a.xx - b.xx, a.yy - b.yy, a.zz - b.zz, a.yz - b.yz, a.xz - b.xz, a.xy - b.xy};
+}
+/// S:A of a symmetric A.
+template <class T>
+CARUS_INLINE T contract(const Sym3T<T>& S, const Mat3T<T>& A) {
+  return S.xx * A.m00 + S.yy * A.m11 + S.zz * A.m22 + Scalar<T>(2) * (S.yz * A.m12 + S.xz * A.m02 + S.xy * A.m01);
 }
 
 /// S = F^-1 P of an isochoric P; F^-1 = (cof F)^T/J.

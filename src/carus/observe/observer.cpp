@@ -27,7 +27,7 @@ struct Moment {
   Vec3 tangent;  // there
   Strain::Field strain;
   HeadSkin::Load skin;
-  double driving, axial;          // [N] contact on the fetus along the tangent: what pushes down, and the net
+  double axial;                   // [N] contact on the fetus along the tangent, net
   std::vector<Penetration> gaps;  // independent check, per pair of bodies
 };
 
@@ -253,7 +253,7 @@ struct Observer::Impl {
       add("pressure_" + model.pressures[i].name + "_mmhg",
           [=](const Moment& m) { return i < m.seen.pressures.size() ? m.seen.pressures[i] / units::mmHg : 0.0; });
     }
-    add("expulsive_force_n", [](const Moment& m) { return m.driving; });
+    add("expulsive_force_n", [](const Moment& m) { return -m.skin.net.dot(m.tangent); });
     add("axial_contact_force_n", [](const Moment& m) { return m.axial; });
     add("head_contact_force_n", [](const Moment& m) { return m.skin.force; });
     add("head_pressure_mean_kpa", [](const Moment& m) { return m.skin.mean_pressure / units::kPa; });
@@ -295,14 +295,16 @@ struct Observer::Impl {
                                       {"external_work", &O::external_work},
                                       {"contact_work", &O::contact_work},
                                       {"damping_work", &O::damping_work},
-                                      {"active_work", &O::active_work}}) {
+                                      {"active_work", &O::active_work},
+                                      {"relaxation_work", &O::relaxation_work}}) {
       add(std::string("energy_") + name + "_j", [f = field](const Moment& m) { return m.seen.*f; });
     }
     // What was put in, by loads, contact (what it takes counts negative) and muscle, less what damping took and what is
-    // there.
+    // there, by the instantaneous stiffness, of which relaxation spared a part.
     add("energy_imbalance_j", [](const Moment& m) {
       const auto& o = m.seen;
-      return o.external_work + o.contact_work + o.active_work - o.damping_work - o.kinetic - o.internal;
+      return o.external_work + o.contact_work + o.active_work + o.relaxation_work - o.damping_work - o.kinetic -
+             o.internal;
     });
   }
 
@@ -358,16 +360,11 @@ struct Observer::Impl {
              strain.field(state.x),
              skin.load(state.x, seen.contact_force),
              0,
-             0,
              penetration.check(state.x)};
     m.s = setup.canal_nearest(m.head.centre);
     m.tangent = setup.canal_tangent(m.s);
     if (!seen.contact_force.empty()) {
-      for (const auto n : fetus) {
-        const double f = seen.contact_force[n].dot(m.tangent);
-        m.axial += f;
-        m.driving += std::max(0.0, f);
-      }
+      for (const auto n : fetus) m.axial += seen.contact_force[n].dot(m.tangent);
     }
     return m;
   }

@@ -81,7 +81,7 @@ HeadSkin::HeadSkin(const std::vector<Vec3>& rest, const mesh::Triangles& skin, c
 }
 
 HeadSkin::Load HeadSkin::load(const std::vector<Vec3>& x, const std::vector<Vec3>& force) const {
-  if (nodes_.empty() || force.empty()) return {0, 0, 0};
+  if (nodes_.empty() || force.empty()) return {Vec3::Zero(), 0, 0, 0};
   const auto local = [&](std::int32_t n) {
     return std::size_t(std::lower_bound(nodes_.begin(), nodes_.end(), n) - nodes_.begin());
   };
@@ -90,11 +90,11 @@ HeadSkin::Load HeadSkin::load(const std::vector<Vec3>& x, const std::vector<Vec3
     const Vec3 third = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]) / 6;
     for (const auto n : t) area[local(n)] += third;
   }
-  Load load{0, 0, 0};
+  Load load{Vec3::Zero(), 0, 0, 0};
   std::vector<double> pressed(nodes_.size(), 0.0);  // normal force inwards [N]
   double sum_pressed = 0, sum_area = 0;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    load.force += force[nodes_[i]].norm();
+    load.net += force[nodes_[i]], load.force += force[nodes_[i]].norm();
     const double a = area[i].norm();
     if (a > 0) pressed[i] = std::max(0.0, -force[nodes_[i]].dot(area[i]) / a);
     if (pressed[i] > 0) sum_pressed += pressed[i], sum_area += a;

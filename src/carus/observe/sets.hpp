@@ -39,6 +39,7 @@ class HeadSkin {
   /// Facets of `skin` whose nodes all lie nearer to a node of `bone` than to one of `other`, at rest.
   HeadSkin(const std::vector<Vec3>& rest, const mesh::Triangles& skin, const Nodes& bone, const Nodes& other);
   struct Load {
+    Vec3 net;              ///< [N] Σf
     double force;          ///< [N] Σ|f|
     double mean_pressure;  ///< [Pa] normal force over the area of the nodes that are in contact
     double max_pressure;   ///< [Pa] largest over patches of a node and its neighbours: single nodes only show the mesh

@@ -164,6 +164,7 @@ std::vector<Plot> all_plots(const Folder& folder) {
         {"energy_contact_work_j", "contact"},
         {"energy_damping_work_j", "damping"},
         {"energy_active_work_j", "muscle"},
+        {"energy_relaxation_work_j", "relaxation"},
         {"energy_imbalance_j", "imbalance"}},
        {},
        {}},

@@ -13,7 +13,7 @@
 
 namespace carus::solve {
 
-fem::KernelMaterial kernel_material(const fem::Region& region, double dt) {
+fem::KernelMaterial kernel_material(const fem::Region& region) {
   const auto& m = region.material;
   fem::KernelMaterial k{};
   k.law = m.law;
@@ -22,8 +22,14 @@ fem::KernelMaterial kernel_material(const fem::Region& region, double dt) {
   k.fibres = region.fibres && m.fibre_k1 > 0;
   k.prony_terms = int(m.prony.size());
   CARUS_ASSERT(k.prony_terms <= fem::max_prony_terms);
-  for (int i = 0; i < k.prony_terms; ++i) k.prony[i] = material::PronyFactors::of(m.prony[i].g, m.prony[i].tau, dt);
   return k;
+}
+
+void set_relaxation(fem::KernelMaterial& kernel, const fem::Region& region, double dt) {
+  for (int i = 0; i < kernel.prony_terms; ++i) {
+    const auto& branch = region.material.prony[std::size_t(i)];
+    kernel.prony[i] = material::PronyFactors::of(branch.g, branch.tau, dt);
+  }
 }
 
 Mat3 inverse_active_strain(const fem::Retraction& r, std::size_t i, double rest_length) {
@@ -54,16 +60,46 @@ double energy_density(const material::Material& m, const material::Mat3T<double>
   CARUS_ASSERT(false);
 }
 
-}  // namespace
-
-double element_energy(const fem::Model& model, const fem::Batch& batch, int lane, const std::vector<Vec3>& x) {
-  const auto e = batch.element[lane];
-  const auto& t = model.mesh.tets[e];
+material::Mat3T<double> deformation_gradient(const mesh::Tet& t, const fem::Batch& batch, int lane,
+                                             const std::vector<Vec3>& x) {
   Mat3 D, B;
   for (int a = 0; a < 3; ++a) D.col(a) = x[t[a + 1]] - x[t[0]];
   for (int k = 0; k < 9; ++k) B(k / 3, k % 3) = batch.B[k][lane];
-  const Mat3 G = D * B;
-  const material::Mat3T<double> F{G(0, 0), G(0, 1), G(0, 2), G(1, 0), G(1, 1), G(1, 2), G(2, 0), G(2, 1), G(2, 2)};
+  const Mat3 F = D * B;
+  return {F(0, 0), F(0, 1), F(0, 2), F(1, 0), F(1, 1), F(1, 2), F(2, 0), F(2, 1), F(2, 2)};
+}
+
+}  // namespace
+
+double element_relaxed(const fem::Model& model, const fem::Block& block, std::size_t batch, int lane,
+                       const std::vector<Vec3>& x) {
+  std::size_t run = 0;
+  while (block.runs[run].end <= batch) ++run;
+  const auto terms = model.regions[block.runs[run].region].material.prony.size();
+  if (terms == 0) return 0;
+  const auto past = block.history_begin[run] + (batch - block.runs[run].begin) * (fem::first_branch + terms);
+  const auto& taken = block.history[past + fem::relaxed_stress].row;
+  const material::Sym3T<double> D{taken[0][lane], taken[1][lane], taken[2][lane],
+                                  taken[3][lane], taken[4][lane], taken[5][lane]};
+  const fem::Batch& b = block.batches[batch];
+  const auto F = deformation_gradient(model.mesh.tets[b.element[lane]], b, lane, x);
+  return 0.5 * double(b.volume[lane]) * material::contract(D, material::right_strain(F));
+}
+
+double relaxed_energy(const fem::Model& model, const std::vector<fem::Block>& blocks, const std::vector<Vec3>& x) {
+  return parallel::sum_chunks(blocks.size(), 1, [&](std::size_t i, std::size_t) {
+    double sum = 0;
+    if (blocks[i].history.empty()) return sum;
+    for (std::size_t q = 0; q < blocks[i].batches.size(); ++q) {
+      for (int l = 0; l < fem::lanes; ++l) sum += element_relaxed(model, blocks[i], q, l, x);
+    }
+    return sum;
+  });
+}
+
+double element_energy(const fem::Model& model, const fem::Batch& batch, int lane, const std::vector<Vec3>& x) {
+  const auto e = batch.element[lane];
+  const auto F = deformation_gradient(model.mesh.tets[e], batch, lane, x);
   const auto& region = model.regions[model.mesh.labels[e]];
   double w = energy_density(region.material, F);
   if (region.fibres && region.material.fibre_k1 > 0) {

@@ -12,7 +12,8 @@ namespace carus::solve {
 /// Static: inertia is left out.
 std::vector<Vec3> Explicit::Impl::reactions(const std::vector<Vec3>& contact_force) const {
   std::vector<Vec3> f(state.x.size());
-  for (std::size_t i = 0; i < f.size(); ++i) f[i] = internal_force(i) + external_force[i] + contact_force[i];
+  for (std::size_t i = 0; i < f.size(); ++i)
+    f[i] = internal_force(i) + external_force[i] + tether_force(i) + contact_force[i];
   for (const auto& tie : model.ties) {
     for (int k = 0; k < 3; ++k) f[tie.facet[k]] += tie.weights[k] * f[tie.node];
     f[tie.node].setZero();
@@ -38,15 +39,14 @@ double Explicit::Impl::stored() const { return stored_energy(model, blocks, stat
 
 void Explicit::Impl::keep() {
   state.rest_length = rest_length.rings();
-  state.internal = {work.external, work.contact,        work.damping, work.active,
-                    max_speed,     double(pace.rung()), retracted_at, internal_energy};
+  state.internal = {work.external,       work.contact, work.damping, work.active,    work.relaxation, max_speed,
+                    double(pace.rung()), relaxed_at,   retracted_at, internal_energy};
   contact->pause(state.x);
   const auto partners = contact->save();
   state.internal.insert(state.internal.end(), partners.begin(), partners.end());
   for (const auto& b : blocks) {
-    for (const auto& h : b.history) {
-      for (const auto& row : h.s_iso) state.internal.insert(state.internal.end(), row, row + fem::lanes);
-      for (const auto& row : h.h) state.internal.insert(state.internal.end(), row, row + fem::lanes);
+    for (const auto& stress : b.history) {
+      for (const auto& row : stress.row) state.internal.insert(state.internal.end(), row, row + fem::lanes);
     }
   }
   good = state, good_work = work;
@@ -55,17 +55,15 @@ void Explicit::Impl::keep() {
 
 void Explicit::Impl::restore_private() {
   const double* p = state.internal.data();
-  work = {p[0], p[1], p[2], p[3]}, max_speed = p[4];
-  pace.set_rung(int(p[5])), retracted_at = p[6], internal_energy = p[7];
-  p += 8;
+  work = {p[0], p[1], p[2], p[3], p[4]}, max_speed = p[5];
+  pace.set_rung(int(p[6])), relaxed_at = p[7], retracted_at = p[8], internal_energy = p[9];
+  p += 10;
   take_pace();
   contact->load(p, state.x);
   p += contact->save().size();
   for (auto& b : blocks) {
-    for (auto& h : b.history) {
-      for (auto& row : h.s_iso)
-        for (float& v : row) v = float(*p++);
-      for (auto& row : h.h)
+    for (auto& stress : b.history) {
+      for (auto& row : stress.row)
         for (float& v : row) v = float(*p++);
     }
   }
@@ -115,10 +113,9 @@ Observables Explicit::observe() const {
   Observables o;
   o.pressures = s.pressures;
   o.kinetic = s.kinetic(), o.internal = s.stored();
-  // The tethers are among the external forces, but what they take is stored.
-  o.external_work = s.work.external + tether_energy(s.model, s.state), o.contact_work = s.work.contact,
-  o.damping_work = s.work.damping;
+  o.external_work = s.work.external, o.contact_work = s.work.contact, o.damping_work = s.work.damping;
   o.active_work = s.work.active;
+  o.relaxation_work = s.work.relaxation + relaxed_energy(s.model, s.blocks, s.state.x);
   o.least_gap = s.contact->least_gap();
   for (const auto& r : s.reports) o.min_J = std::min(o.min_J, double(r.min_J)), o.inverted += r.inverted;
   o.contact_force = s.contact_impulse;

@@ -23,6 +23,7 @@ struct Explicit::Impl {
 
   struct Work {
     double external = 0, contact = 0, damping = 0, active = 0;
+    double relaxation = 0;  ///< less what relaxation has taken of the stress now, over the strain now
   };
   /// What a pass over a chunk of nodes leaves behind.
   struct NodeSums {
@@ -34,6 +35,7 @@ struct Explicit::Impl {
     held = 2,      ///< cannot move along some directions
     loaded = 4,    ///< an external force acts on it
     touching = 8,  ///< in a constraint of contact, or led: moves after the contact solve only
+    tethered = 16,
   };
 
   const fem::Model& model;
@@ -62,6 +64,8 @@ struct Explicit::Impl {
   fem::State state, good;
   Work work, good_work;
   std::vector<Vec3> external_force, contact_impulse;
+  std::vector<std::int32_t> tether_of;  // per node, valid where tethered
+  std::vector<Mat3> tethers;            // per tethered node: sum k d d^T [N/m]
   std::vector<std::uint8_t> traits;            // per node, Trait bits
   std::vector<double> carry, pull;             // per free node: v* = carry v + pull f, drag included
   std::vector<double> drag_mass;               // per node: what drag takes from momentum in a step, over velocity [kg]
@@ -73,8 +77,11 @@ struct Explicit::Impl {
   int contact_samples = 0;
   std::vector<NodeSums> sums, touched_sums;  // per chunk
   std::vector<fem::KernelReport> reports;
+  double relax_every = 0;          // [s of labour]: the least relaxation time in many parts; 0: nothing relaxes
+  std::vector<double> relaxation;  // per block, of the last update [J]
   std::vector<double> pressures;
   double max_speed = 0, hinge_speed = 0;
+  double relaxed_at = 0;       // [s of labour]
   double retracted_at = 0;     // [s of labour]
   double internal_energy = 0;  // at the last look, for the pace
   bool loads_due = true;       // after every stop, so that a resumed run does what an uninterrupted one does
@@ -87,6 +94,7 @@ struct Explicit::Impl {
   void move_mass_of_ties();
   void make_inverse_masses();
   void describe_nodes();
+  void gather_tethers();
   void make_materials();
   void take_pace();
   [[nodiscard]] std::vector<double> hinge_inverse_inertias() const;
@@ -106,11 +114,25 @@ struct Explicit::Impl {
   void retract(double t);
   [[nodiscard]] double retracting_energy() const;
   void gather(fem::Block& b) const;
+  double relax(fem::Block& b) const;
   void element_forces();
   [[nodiscard]] bool loads_stand(double span) const;
   void judge_pace();
   void find_contacts();
-  [[nodiscard]] Vec3 internal_force(std::size_t i) const;
+  [[nodiscard]] Vec3 internal_force(std::size_t i) const {
+    Vec3 f = Vec3::Zero();
+    for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
+      const float* g = shares[std::size_t(q)]->v;
+      f += Vec3(g[0], g[1], g[2]);
+    }
+    return f;
+  }
+  /// Of the springs now. They are no load that may be looked up every few steps: a spring that answers late feeds what
+  /// swings on it.
+  [[nodiscard]] Vec3 tether_force(std::size_t i) const {
+    if (!(traits[i] & tethered)) return Vec3::Zero();
+    return tethers[std::size_t(tether_of[i])] * (model.mesh.nodes[i] - state.x[i]);
+  }
   [[nodiscard]] Vec3 predicted_velocity(std::size_t i) const;
   void predict();
   void carry_ties();

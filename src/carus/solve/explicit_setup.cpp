@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "carus/fem/constraints.hpp"
 #include "carus/solve/energy.hpp"
@@ -11,6 +12,7 @@ namespace carus::solve {
 namespace {
 
 constexpr int block_count = 16;  // more than any machine we expect has cores for one birth; part of the result
+constexpr double updates_per_tau = 200;
 
 }  // namespace
 
@@ -31,6 +33,7 @@ Explicit::Impl::Impl(const fem::Model& m, const ExplicitOptions& o)
   constrained = fem::constrained_axes(model);
   make_inverse_masses();
   describe_nodes();
+  gather_tethers();
   make_elements();
   make_contact();
   keep();
@@ -95,7 +98,6 @@ void Explicit::Impl::describe_nodes() {
     for (const auto& t : load.surface)
       for (const auto node : t) traits[node] |= loaded;
   }
-  for (const auto& t : model.tethers) traits[t.node] |= loaded;
   if (!model.body_forces.empty())
     for (auto& t : traits) t |= loaded;
   for (const auto& motion : model.motions) led.insert(led.end(), motion.nodes.begin(), motion.nodes.end());
@@ -105,14 +107,28 @@ void Explicit::Impl::describe_nodes() {
   }
 }
 
+void Explicit::Impl::gather_tethers() {
+  tether_of.assign(state.x.size(), -1);
+  for (const auto& t : model.tethers) {
+    auto& index = tether_of[t.node];
+    if (index < 0) index = std::int32_t(tethers.size()), tethers.push_back(Mat3::Zero());
+    tethers[std::size_t(index)] += t.stiffness * t.direction * t.direction.transpose();
+    traits[t.node] |= tethered;
+  }
+}
+
 void Explicit::Impl::make_materials() {
-  materials.clear();
-  for (const auto& r : model.regions) materials.push_back(kernel_material(r, dt * scale));
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& r : model.regions) {
+    materials.push_back(kernel_material(r));
+    for (const auto& branch : r.material.prony) least = std::min(least, branch.tau);
+  }
+  if (std::isfinite(least)) relax_every = least / updates_per_tau;
 }
 
 void Explicit::Impl::make_elements() {
   blocks = fem::make_blocks(model, block_count);
-  reports.resize(blocks.size());
+  reports.resize(blocks.size()), relaxation.resize(blocks.size());
   nodal_pressure = std::make_unique<fem::NodalPressure>(model, blocks);
   make_materials();
   std::vector<std::int32_t> count(state.x.size() + 1, 0);
@@ -159,7 +175,6 @@ std::vector<double> Explicit::Impl::hinge_inverse_inertias() const {
 void Explicit::Impl::take_pace() {
   scale = state.labour_per_pseudo = mean_scale * pace.factor();
   make_inverse_masses();
-  make_materials();
   contact->weigh(inverse_mass, inverse_mass_blocked, hinge_inverse_inertias());
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "carus/core/error.hpp"
 #include "carus/core/stopwatch.hpp"
@@ -28,10 +29,6 @@ void Explicit::Impl::apply_loads(double t) {
   for (std::size_t l = 0; l < model.pressures.size(); ++l) {
     pressures[l] = model.pressures[l].pressure(t);
     if (pressures[l] != 0) fem::add_pressure_forces(model.pressures[l], pressures[l], state.x, external_force);
-  }
-  for (const auto& tether : model.tethers) {
-    const double out = tether.direction.dot(state.x[tether.node] - model.mesh.nodes[tether.node]);
-    external_force[tether.node] -= tether.stiffness * out * tether.direction;
   }
   fem::add_body_forces(model, body_mass, t, external_force);
 }
@@ -63,7 +60,8 @@ double Explicit::Impl::retracting_energy() const {
     double sum = 0;
     for (std::size_t i = b; i < e; ++i) {
       const auto [block, batch, lane] = retracting[i];
-      sum += element_energy(model, blocks[block].batches[batch], lane, state.x);
+      sum += element_energy(model, blocks[block].batches[batch], lane, state.x) -
+             element_relaxed(model, blocks[block], std::size_t(batch), lane, state.x);
     }
     return sum;
   });
@@ -76,13 +74,32 @@ void Explicit::Impl::gather(fem::Block& b) const {
   }
 }
 
+double Explicit::Impl::relax(fem::Block& b) const {
+  double energy = 0;
+  for (std::size_t r = 0; r < b.runs.size(); ++r) {
+    const auto& run = b.runs[r];
+    if (materials[run.region].prony_terms == 0) continue;
+    energy += fem::kernel().relax(b.batches.data() + run.begin, run.end - run.begin, materials[run.region], b.x.data(),
+                                  b.history.data() + b.history_begin[r]);
+  }
+  return energy;
+}
+
 void Explicit::Impl::element_forces() {
   const Stopwatch watch(seconds[elements]);
   const auto& kernel = fem::kernel();
+  const double since = state.time - relaxed_at;
+  const bool relaxes = relax_every > 0 && since >= relax_every;
+  if (relaxes) {
+    for (std::size_t r = 0; r < materials.size(); ++r) set_relaxation(materials[r], model.regions[r], since);
+    relaxed_at = state.time;
+  }
   parallel::for_chunks(blocks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
     gather(blocks[i]);
+    if (relaxes) relaxation[i] = relax(blocks[i]);
     nodal_pressure->add_volumes(blocks[i]);
   });
+  if (relaxes) work.relaxation = std::accumulate(relaxation.begin(), relaxation.end(), work.relaxation);
   nodal_pressure->update(blocks);
   parallel::for_chunks(blocks.size(), 1, [&](std::size_t i, std::size_t, std::size_t) {
     fem::Block& b = blocks[i];
@@ -140,19 +157,11 @@ void Explicit::Impl::find_contacts() {
   std::sort(touched.begin(), touched.end());
 }
 
-Vec3 Explicit::Impl::internal_force(std::size_t i) const {
-  Vec3 f = Vec3::Zero();
-  for (std::int32_t q = share_begin[i]; q < share_begin[i + 1]; ++q) {
-    const float* g = shares[std::size_t(q)]->v;
-    f += Vec3(g[0], g[1], g[2]);
-  }
-  return f;
-}
-
 /// v* = (m v + dt f) / (m + dt drag m0): drag implicit, on the unscaled mass m0.
-Vec3 Explicit::Impl::predicted_velocity(std::size_t i) const {
+[[gnu::always_inline]] inline Vec3 Explicit::Impl::predicted_velocity(std::size_t i) const {
   Vec3 f = internal_force(i);
   if (traits[i] & loaded) f += external_force[i];
+  if (traits[i] & tethered) f += tether_force(i);
   if (!(traits[i] & held)) return carry[i] * state.v[i] + pull[i] * f;
   const Vec3 momentum = masses.scaled[i] * state.v[i] + dt * f;
   const Vec3& blocked = inverse_mass_blocked[i];
@@ -163,7 +172,7 @@ Vec3 Explicit::Impl::predicted_velocity(std::size_t i) const {
 void Explicit::Impl::predict() {
   const Stopwatch watch(seconds[nodes]);
   parallel::for_chunks(state.x.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
-    NodeSums& s = sums[c] = {};
+    NodeSums s;
     for (std::size_t i = b; i < e; ++i) {
       if ((traits[i] & (fixed | touching)) == fixed) continue;
       const Vec3 before = state.v[i], free = traits[i] & fixed ? before : predicted_velocity(i);
@@ -174,13 +183,15 @@ void Explicit::Impl::predict() {
         move_node(i, before, free, s);
       }
     }
+    sums[c] = s;
   });
 }
 
 /// What acts on a tied node acts on its facet.
 void Explicit::Impl::carry_ties() {
   for (const auto& tie : model.ties) {
-    const Vec3 f = internal_force(std::size_t(tie.node)) + external_force[tie.node];
+    const auto i = std::size_t(tie.node);
+    const Vec3 f = internal_force(i) + external_force[i] + tether_force(i);
     for (int k = 0; k < 3; ++k) {
       const auto n = tie.facet[k];
       const Vec3 impulse = dt * tie.weights[k] * f;
@@ -197,7 +208,7 @@ void Explicit::Impl::impose_motions() {
   for (const auto& motion : model.motions) {
     for (const auto n : motion.nodes) {
       const Vec3 wanted = (fem::placed(motion, model.mesh.nodes[n], t) - state.x[n]) / dt;
-      const Vec3 f = internal_force(std::size_t(n)) + external_force[n];
+      const Vec3 f = internal_force(std::size_t(n)) + external_force[n] + tether_force(std::size_t(n));
       Vec3& v = state.v[n];
       for (int k = 0; k < 3; ++k) {
         if (!((motion.axes >> k) & 1)) continue;
@@ -251,13 +262,13 @@ void Explicit::Impl::turn_hinges_freely() {
 /// Every force works along the mean velocity of the step, contact included; so the works add up to the change of
 /// kinetic energy. Measured before the contact solve, a resting contact would seem to take what the load only seems
 /// to give.
-void Explicit::Impl::book_work(std::size_t i, const Vec3& before, NodeSums& s) const {
+[[gnu::always_inline]] inline void Explicit::Impl::book_work(std::size_t i, const Vec3& before, NodeSums& s) const {
   const Vec3 mean = 0.5 * (state.v[i] + before);
   s.damping += drag_mass[i] * state.v[i].dot(mean);
   if (traits[i] & loaded) s.external += dt * external_force[i].dot(mean);
 }
 
-void Explicit::Impl::move_node(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s) {
+[[gnu::always_inline]] inline void Explicit::Impl::move_node(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s) {
   const double cap2 = options.max_node_speed * options.max_node_speed;
   Vec3& v = state.v[i];
   double v2 = v.squaredNorm();
@@ -270,7 +281,7 @@ void Explicit::Impl::move_node(std::size_t i, const Vec3& before, const Vec3& fr
 
 /// A displacement without momentum. What it does against the forces on the node (all of them: m dv + dt drag m0 v*) is
 /// contact's work.
-void Explicit::Impl::lift_node(std::size_t i, NodeSums& s) {
+[[gnu::always_inline]] inline void Explicit::Impl::lift_node(std::size_t i, NodeSums& s) {
   Vec3& u = lift[i];
   if (u.isZero(0)) return;
   s.contact -= u.dot(dragged_mass(i) * v_free[i] - masses.scaled[i] * v_before[i]);
@@ -283,12 +294,13 @@ void Explicit::Impl::lift_node(std::size_t i, NodeSums& s) {
 void Explicit::Impl::move_touched() {
   const Stopwatch watch(seconds[nodes]);
   parallel::for_chunks(touched.size(), node_chunk, [&](std::size_t b, std::size_t e, std::size_t c) {
-    NodeSums& s = touched_sums[c] = {};
+    NodeSums s;
     for (std::size_t k = b; k < e; ++k) {
       const auto i = std::size_t(touched[k]);
       move_node(i, v_before[i], v_free[i], s);
       lift_node(i, s);
     }
+    touched_sums[c] = s;
   });
   turn_hinges();
   double speed2 = hinge_speed * hinge_speed;

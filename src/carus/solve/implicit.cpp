@@ -74,7 +74,7 @@ std::string Implicit::Impl::intersecting(const std::vector<Vec3>& at) {
 
 void Implicit::Impl::keep() {
   state.rest_length = rest_length.rings();
-  state.internal = {work.external, work.contact, work.damping, work.active, step_length};
+  state.internal = {work.external, work.contact, work.damping, work.active, work.relaxation, step_length};
   const auto history = elastic.save();
   state.internal.insert(state.internal.end(), history.begin(), history.end());
 }
@@ -89,7 +89,7 @@ void Implicit::Impl::restore(const fem::State& from) {
                     from.x.size(), from.internal.size(), state.x.size(), fixed_entries + elastic.history_size()));
   state = from;
   const double* p = state.internal.data();
-  work = {p[0], p[1], p[2], p[3]}, step_length = p[4];
+  work = {p[0], p[1], p[2], p[3], p[4]}, step_length = p[5];
   elastic.load(p + fixed_entries);
   rest_length.rings() = state.rest_length;
   if (rest_length.active()) elastic.set_rest_length(rest_length);
@@ -108,7 +108,7 @@ Observables Implicit::Impl::observe() {
   for (std::size_t h = 0; h < model.hinges.size(); ++h)
     o.internal += 0.5 * model.hinges[h].stiffness * state.hinge_angle[h] * state.hinge_angle[h];
   o.external_work = work.external, o.contact_work = work.contact, o.damping_work = work.damping;
-  o.active_work = work.active;
+  o.active_work = work.active, o.relaxation_work = work.relaxation;
   const auto volumes = elastic.volumes(state.x);
   o.min_J = volumes.min_J, o.inverted = volumes.inverted;
   o.contact_force.assign(state.x.size(), Vec3::Zero());

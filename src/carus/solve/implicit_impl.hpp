@@ -19,7 +19,7 @@ struct Implicit::Impl {
       "elements", "assembly", "linear solve", "line search", "contact forces", "collision detection", "loads", "proof"};
 
   struct Work {
-    double external = 0, contact = 0, damping = 0, active = 0;
+    double external = 0, contact = 0, damping = 0, active = 0, relaxation = 0;
   };
   /// Why a step did not come about; empty: it did.
   using Refusal = std::string;
@@ -91,7 +91,7 @@ struct Implicit::Impl {
   void advance_to(double time);
 
   // implicit.cpp: state that a checkpoint carries, what is seen from outside
-  static constexpr std::size_t fixed_entries = 5;
+  static constexpr std::size_t fixed_entries = 6;
   void keep();
   void restore(const fem::State& from);
   Observables observe();

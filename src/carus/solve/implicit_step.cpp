@@ -205,7 +205,7 @@ bool Implicit::Impl::too_long() {
 }
 
 void Implicit::Impl::accept() {
-  elastic.end_step(x);
+  work.relaxation += elastic.end_step(x);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3 d = x[i] - x0[i];
     work.external += load[i].dot(d);

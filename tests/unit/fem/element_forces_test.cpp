@@ -15,17 +15,20 @@ namespace carus::fem {
 // The instruction sets that kernel_choice.cpp chooses from.
 namespace portable {
 KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*,
-                    BatchHistory*);
+                    const BatchStress*);
+double relax(const Batch*, std::size_t, const KernelMaterial&, const Float4*, BatchStress*);
 void volumes(const Batch*, std::size_t, const Float4*, float*);
 }  // namespace portable
 namespace avx2 {
 KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*,
-                    BatchHistory*);
+                    const BatchStress*);
+double relax(const Batch*, std::size_t, const KernelMaterial&, const Float4*, BatchStress*);
 void volumes(const Batch*, std::size_t, const Float4*, float*);
 }  // namespace avx2
 namespace avx512 {
 KernelReport forces(const Batch*, std::size_t, const KernelMaterial&, const Float4*, Float4*, const float*,
-                    BatchHistory*);
+                    const BatchStress*);
+double relax(const Batch*, std::size_t, const KernelMaterial&, const Float4*, BatchStress*);
 void volumes(const Batch*, std::size_t, const Float4*, float*);
 }  // namespace avx512
 #endif
@@ -116,11 +119,19 @@ TEST(ElementForces, SumToZeroWithTheirMoments) {
 /// to the rounding of the single-precision forces.
 TEST(ElementForces, AreMinusTheGradientOfTheEnergy) {
   for (const auto& law : models::laws) {
-    for (const bool fibres : {false, true}) {
-      const Model m = block(law.law, fibres);
+    for (const auto& [fibres, relaxing] : {std::pair{false, false}, {true, false}, {false, true}, {true, true}}) {
+      const Model m = block(law.law, fibres, relaxing);
       auto blocks = make_blocks(m, 16);
       State state;
       state.x = deformed(m, law.objective);
+      const auto energy = [&](const State& s) {
+        return solve::stored_energy(m, blocks, s) - solve::relaxed_energy(m, blocks, s.x);
+      };
+      for (int update = 0; update < 2; ++update) {
+        const double before = energy(state), rise = models::relax(m, blocks, state.x, 1);
+        EXPECT_NEAR(energy(state) - before, rise, 1e-5 * before) << law.name << " fibres " << fibres;
+        EXPECT_EQ(relaxing, rise < 0) << law.name << " fibres " << fibres;
+      }
       std::mt19937 random(7);
       std::normal_distribution<double> normal;
       std::vector<Vec3> direction;
@@ -133,9 +144,7 @@ TEST(ElementForces, AreMinusTheGradientOfTheEnergy) {
       const auto error = [&](double h) {
         State up = state, down = state;
         for (std::size_t i = 0; i < direction.size(); ++i) up.x[i] += h * direction[i], down.x[i] -= h * direction[i];
-        return std::abs((solve::stored_energy(m, blocks, up) - solve::stored_energy(m, blocks, down)) / (2 * h) -
-                        slope) /
-               std::abs(slope);
+        return std::abs((energy(up) - energy(down)) / (2 * h) - slope) / std::abs(slope);
       };
       // Steps of 1.6 and 0.8 % of an edge: far above single-precision noise, so the order shows. Small strain without
       // fibres is quadratic: no error to fall.
@@ -150,23 +159,23 @@ TEST(ElementForces, AreMinusTheGradientOfTheEnergy) {
 }
 
 #ifdef __x86_64__
+const Kernel plain{portable::forces, portable::relax, portable::volumes, "portable"};
 struct Isa {
-  const char* name;
-  ElementForces forces;
-  ElementVolumes volumes;
+  Kernel kernel;
   bool here;
 };
 std::vector<Isa> instruction_sets() {
   const bool has_avx512 =
       __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  return {{"avx2", avx2::forces, avx2::volumes, __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")},
-          {"avx512", avx512::forces, avx512::volumes, has_avx512}};
+  return {{{avx2::forces, avx2::relax, avx2::volumes, "avx2"},
+           __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")},
+          {{avx512::forces, avx512::relax, avx512::volumes, "avx512"}, has_avx512}};
 }
 
 TEST(ElementForces, InstructionSetsAgree) {
   for (const auto& isa : instruction_sets()) {
     if (!isa.here) {
-      std::printf("skipped: this processor has no %s\n", isa.name);
+      std::printf("skipped: this processor has no %s\n", isa.kernel.name);
       continue;
     }
     for (const auto& law : models::laws) {
@@ -176,10 +185,12 @@ TEST(ElementForces, InstructionSetsAgree) {
           auto a = make_blocks(m, 16), b = a;
           const auto x = deformed(m, law.objective);
           for (int pass = 0; pass < 2; ++pass) {  // the second meets the history of the first
-            const auto fa = element_forces(m, a, x, portable::forces), fb = element_forces(m, b, x, isa.forces);
+            const double ra = models::relax(m, a, x, 1, plain), rb = models::relax(m, b, x, 1, isa.kernel);
+            EXPECT_NEAR(ra, rb, 1e-5 * std::abs(ra)) << isa.kernel.name << ' ' << law.name << ' ' << fibres;
+            const auto fa = element_forces(m, a, x, plain), fb = element_forces(m, b, x, isa.kernel);
             double apart = 0;
             for (std::size_t i = 0; i < x.size(); ++i) apart = std::max(apart, (fa.at[i] - fb.at[i]).norm());
-            EXPECT_LT(apart, 1e-5 * largest(fa.at)) << isa.name << ' ' << law.name << ' ' << fibres << relaxing;
+            EXPECT_LT(apart, 1e-5 * largest(fa.at)) << isa.kernel.name << ' ' << law.name << ' ' << fibres << relaxing;
             EXPECT_NEAR(fa.report.min_J, fb.report.min_J, 1e-5);
           }
         }
@@ -193,15 +204,15 @@ TEST(ElementForces, InstructionSetsAgree) {
       }
       std::vector<float> va(b.nodes.size(), 0.f), vb = va;
       portable::volumes(b.batches.data(), b.batches.size(), b.x.data(), va.data());
-      isa.volumes(b.batches.data(), b.batches.size(), b.x.data(), vb.data());
-      for (std::size_t l = 0; l < va.size(); ++l) EXPECT_NEAR(va[l], vb[l], 1e-5f * va[l]) << isa.name;
+      isa.kernel.volumes(b.batches.data(), b.batches.size(), b.x.data(), vb.data());
+      for (std::size_t l = 0; l < va.size(); ++l) EXPECT_NEAR(va[l], vb[l], 1e-5f * va[l]) << isa.kernel.name;
     }
   }
 }
 
 TEST(ElementForces, EveryInstructionSetReportsInversionAndNaN) {
   auto sets = instruction_sets();
-  sets.push_back({"portable", portable::forces, portable::volumes, true});
+  sets.push_back({plain, true});
   for (const auto& isa : sets) {
     if (!isa.here) continue;
     for (const auto& law : models::laws) {
@@ -210,11 +221,11 @@ TEST(ElementForces, EveryInstructionSetReportsInversionAndNaN) {
       auto x = m.mesh.nodes;
       const auto victim = m.mesh.tets[200][0];
       x[victim] += Vec3(0.06, 0.05, 0);  // across its opposite facets
-      EXPECT_GT(element_forces(m, blocks, x, isa.forces).report.inverted, 0) << isa.name << ' ' << law.name;
+      EXPECT_GT(element_forces(m, blocks, x, isa.kernel).report.inverted, 0) << isa.kernel.name << ' ' << law.name;
       x[victim] = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
-      const auto report = element_forces(m, blocks, x, isa.forces).report;
-      EXPECT_GT(report.inverted, 0) << isa.name << ' ' << law.name;
-      EXPECT_GE(report.worst_element, 0) << isa.name << ' ' << law.name;
+      const auto report = element_forces(m, blocks, x, isa.kernel).report;
+      EXPECT_GT(report.inverted, 0) << isa.kernel.name << ' ' << law.name;
+      EXPECT_GE(report.worst_element, 0) << isa.kernel.name << ' ' << law.name;
     }
   }
 }

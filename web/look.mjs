@@ -1,0 +1,12 @@
+import { chromium } from '@playwright/test';
+const [,, file, out, ...times] = process.argv;
+const b = await chromium.launch({ executablePath: '/usr/bin/chromium', args: ['--no-sandbox','--disable-dev-shm-usage','--use-gl=angle','--use-angle=swiftshader','--enable-unsafe-swiftshader','--ignore-gpu-blocklist'] });
+const p = await b.newPage({ viewport: { width: 1280, height: 860 } });
+p.on('pageerror', e => console.log('ERR', e.message));
+await p.goto('file://' + file);
+await p.waitForSelector('#app[data-state="ready"][data-decoded="all"]', { timeout: 300000 });
+await p.waitForTimeout(1500);
+await p.screenshot({ path: out + '_0.png' });
+await p.screenshot({ path: out + '_full.png', fullPage: true });
+console.log(await p.evaluate(() => document.body.innerText.slice(0, 1500)));
+await b.close();
