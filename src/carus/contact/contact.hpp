@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <string>
@@ -111,7 +112,7 @@ class Contact {
   /// the nodes in this step and to be forgotten: kept, each penetration would leave kinetic energy behind. Hinges stay.
   void part_penetrated(const std::vector<Vec3>& v, std::vector<Vec3>& lift);
   /// To be told how far any node moved at most in this step [m].
-  void moved(double distance) { since_look_ += distance; }
+  void moved(double distance) { since_look_ += 2 * distance; }
 
   [[nodiscard]] const std::vector<Constraint>& constraints() const { return constraints_; }
   [[nodiscard]] double least_gap() const;  ///< of the active constraints [m]; +inf without any
@@ -137,6 +138,10 @@ class Contact {
     bool self;
     float friction;
     std::int32_t first, last;  ///< probes
+    // How far a node and a facet of the two may have moved against each other, at most [m]:
+    double net = 0;     ///< since the stretch began
+    double before = 0;  ///< from the renewal to there, a sum over stretches
+    double travel = 0;  ///< a sum over the looks since the stretch began
   };
   /// One node looking at one surface.
   struct Probe {
@@ -147,12 +152,21 @@ class Contact {
     double impulse = 0;
     double sleeps_until = 0;  ///< travel of both its surfaces before which it cannot touch; less all the time: awake
   };
-  /// How far the nodes of a surface have gone, as the greatest displacements [m] over three kinds of time.
+  /// The displacements of some nodes over some time: their box, and the longest [m].
+  struct Spread {
+    Vec3 least = Vec3::Zero(), most = Vec3::Zero();
+    double longest2 = 0;
+    explicit Spread(const Vec3& u) : least(u), most(u), longest2(u.squaredNorm()) {}
+    Spread() = default;
+    void add(const Vec3& u) {
+      least = least.cwiseMin(u), most = most.cwiseMax(u);
+      longest2 = std::max(longest2, u.squaredNorm());
+    }
+  };
+  /// What one surface did: positions when the stretch began and at the last look, displacements from there.
   struct Motion {
-    std::vector<Vec3> at_start, at_look;  ///< positions of its nodes: when the stretch began, at the last look
-    double net = 0;                       ///< since the stretch began
-    double before = 0;                    ///< from the renewal to there, a sum over stretches
-    double travel = 0;                    ///< a sum over the looks since the stretch began
+    std::vector<Vec3> at_start, at_look;
+    Spread from_start, from_look;
   };
 
   /// Nearest point of a facet.
@@ -164,9 +178,9 @@ class Contact {
   void renew(const std::vector<Vec3>& x);
   void begin_stretch(const std::vector<Vec3>& x);
   void measure_motion(const std::vector<Vec3>& x);
-  [[nodiscard]] double farthest_since_look(const std::vector<Vec3>& x) const;
+  [[nodiscard]] static double relative_motion(const Spread& a, const Spread& b);
+  [[nodiscard]] double relative_motion_since_look(const std::vector<Vec3>& x);
   [[nodiscard]] bool worn_out() const;
-  [[nodiscard]] double travel(const Pass& p) const { return motion_[p.nodes].travel + motion_[p.facets].travel; }
   void look(const std::vector<Vec3>& x);
   void constrain_all(const std::vector<Vec3>& x);
   void constrain_chunk(std::size_t begin, std::size_t end, const std::vector<Vec3>& x, std::vector<Constraint>& out);
@@ -221,7 +235,7 @@ class Contact {
   std::array<double, parts - 1> cuts_{};  ///< [m] along the axis
   double dt_ = 0, closing_ = 0;           ///< [s], [m]: what two nodes may near each other by in a step
   bool look_due_ = true;
-  double since_look_ = 0;  ///< [m] that any node may be from where it was at the last look
+  double since_look_ = 0;  ///< [m] that any two surfaces may have moved against each other since the last look
   double needed_ = 0;      ///< [m] gap below which a pair must be in the solve of this step
   double held_below_ = 0;  ///< [m] gap below which the last look left constraints
   int steps_since_normals_ = never;

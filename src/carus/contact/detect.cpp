@@ -128,38 +128,59 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
   probe.triangle = found;
 }
 
-void Contact::renew(const std::vector<Vec3>& x) {
+/// Looks for the partners of the worn passes, or of all.
+void Contact::renew(const std::vector<Vec3>& x, bool all) {
   const auto start = std::chrono::steady_clock::now();
   const bool first = renewals_ == 0;
   update_normals(x);
+  std::vector<std::uint8_t> wanted(surfaces_.size(), 0);
+  for (Pass& p : passes_) {
+    p.renewed = all || worn_out(p);
+    if (p.renewed) wanted[std::size_t(p.facets)] = 1;
+  }
   parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
-    if (!first && !moves_[s]) return;
-    grids_[s].build(x, surfaces_[s].triangles, options_.reach);
+    if (wanted[s] && (first || moves_[s])) grids_[s].build(x, surfaces_[s].triangles, options_.reach);
   });
   parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
-    for (std::size_t i = b; i < e; ++i) renew_probe(probes_[i], x);
+    for (std::size_t i = b; i < e; ++i)
+      if (passes_[std::size_t(probes_[i].pass)].renewed) renew_probe(probes_[i], x);
   });
-  for (Motion& m : motion_) m.before = 0;
-  begin_stretch(x);
-  steps_since_renewal_ = 0;
+  for (Pass& p : passes_) {
+    p.before = p.renewed ? 0 : p.before + p.net;
+    if (p.renewed) wake(p);
+  }
+  count_motion_from(x);
+  if (all) steps_since_renewal_ = 0;
   ++renewals_;
   seconds_renewing_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Everything is looked at anew from here on, and motion counted from here.
-void Contact::begin_stretch(const std::vector<Vec3>& x) {
+/// All its probes are looked at anew.
+void Contact::wake(Pass& p) {
+  p.travel = 0;
+  for (auto i = p.first; i < p.last; ++i) {
+    probes_[std::size_t(i)].sleeps_until = awake, probes_[std::size_t(i)].constraint = -1;
+  }
+}
+
+void Contact::count_motion_from(const std::vector<Vec3>& x) {
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
     Motion& m = motion_[s];
     m.at_start.clear();
     for (const auto n : surfaces_[s].nodes) m.at_start.push_back(x[n]);
     m.at_look = m.at_start;
-    m.net = m.travel = 0;
   }
+  for (Pass& p : passes_) p.net = 0;
   near_.clear();
   for (std::size_t i = 0; i < probes_.size(); ++i) {
-    probes_[i].sleeps_until = awake, probes_[i].constraint = -1;
     if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
   }
+}
+
+/// Everything is looked at anew from here on, and motion counted from here.
+void Contact::begin_stretch(const std::vector<Vec3>& x) {
+  for (Pass& p : passes_) wake(p);
+  count_motion_from(x);
 }
 
 /// Cuts that share the constraints out evenly, across the direction in which they reach farthest.
@@ -192,32 +213,45 @@ int Contact::part_of(const Constraint& c, const std::vector<Vec3>& x) const {
   return std::all_of(c.facet.begin(), c.facet.end(), [&](auto n) { return side(n) == part; }) ? int(part) : parts;
 }
 
+/// What moves as one does not move against itself: of all pairs of displacements one is as far from the other as the
+/// boxes allow, or as the longest of each in opposite directions.
+double Contact::relative_motion(const Spread& a, const Spread& b) {
+  const Vec3 apart = (a.most - b.least).cwiseMax(b.most - a.least);
+  return std::min(apart.norm(), std::sqrt(a.longest2) + std::sqrt(b.longest2));
+}
+
 void Contact::measure_motion(const std::vector<Vec3>& x) {
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-    if (!moves_[s]) continue;
+  parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
     Motion& m = motion_[s];
-    double net = 0, step = 0;
-    for (std::size_t v = 0; v < m.at_look.size(); ++v) {
-      const Vec3& p = x[surfaces_[s].nodes[v]];
-      net = std::max(net, (p - m.at_start[v]).squaredNorm());
-      step = std::max(step, (p - m.at_look[v]).squaredNorm());
+    if (!moves_[s] || m.at_look.empty()) return;
+    const auto& nodes = surfaces_[s].nodes;
+    m.from_start = Spread(x[nodes[0]] - m.at_start[0]), m.from_look = Spread(x[nodes[0]] - m.at_look[0]);
+    for (std::size_t v = 0; v < nodes.size(); ++v) {
+      const Vec3& p = x[nodes[v]];
+      m.from_start.add(p - m.at_start[v]), m.from_look.add(p - m.at_look[v]);
       m.at_look[v] = p;
     }
-    m.net = std::sqrt(net), m.travel += std::sqrt(step);
+  });
+  for (Pass& p : passes_) {
+    const Motion &a = motion_[p.nodes], &b = motion_[p.facets];
+    p.net = relative_motion(a.from_start, b.from_start);
+    p.travel += relative_motion(a.from_look, b.from_look);
   }
 }
 
-/// How far any node of a surface is from where it was at the last look [m]. A node that trembles is not far, however
-/// fast.
-double Contact::farthest_since_look(const std::vector<Vec3>& x) const {
-  double most = 0;
-  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
-    if (!moves_[s]) continue;
+/// A node that trembles is not far, however fast.
+double Contact::relative_motion_since_look(const std::vector<Vec3>& x) {
+  parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
+    Motion& m = motion_[s];
+    if (!moves_[s] || m.at_look.empty()) return;
     const auto& nodes = surfaces_[s].nodes;
-    for (std::size_t v = 0; v < nodes.size(); ++v)
-      most = std::max(most, (x[nodes[v]] - motion_[s].at_look[v]).squaredNorm());
-  }
-  return std::sqrt(most);
+    m.from_look = Spread(x[nodes[0]] - m.at_look[0]);
+    for (std::size_t v = 1; v < nodes.size(); ++v) m.from_look.add(x[nodes[v]] - m.at_look[v]);
+  });
+  double most = 0;
+  for (const Pass& p : passes_)
+    most = std::max(most, relative_motion(motion_[p.nodes].from_look, motion_[p.facets].from_look));
+  return most;
 }
 
 /// Of what moves; a fixed bone has had its normals since the start.
@@ -228,33 +262,30 @@ void Contact::update_normals(const std::vector<Vec3>& x) {
   }
 }
 
-/// Some pair of surfaces has moved so far since the renewal that what was out of reach may touch before the next look.
-bool Contact::worn_out() const {
-  const double reserve = options_.reach - options_.sagitta_limit - held_below_;
-  const auto moved = [&](int surface) { return motion_[surface].before + motion_[surface].net; };
-  return std::any_of(passes_.begin(), passes_.end(),
-                     [&](const Pass& p) { return moved(p.nodes) + moved(p.facets) > reserve; });
+/// Its surfaces have moved so far since the renewal that what was out of reach may touch before the next look.
+bool Contact::worn_out(const Pass& p) const {
+  return p.before + p.net > options_.reach - options_.sagitta_limit - held_below_;
 }
 
 void Contact::pause(const std::vector<Vec3>& x) {
   keep_impulses();
   measure_motion(x);
-  for (Motion& m : motion_) m.before += m.net;
+  for (Pass& p : passes_) p.before += p.net;
   begin_stretch(x);
   look_due_ = true, steps_since_normals_ = never;
 }
 
 std::vector<double> Contact::save() const {
   std::vector<double> saved{double(steps_since_renewal_)};
-  saved.reserve(1 + motion_.size() + 2 * probes_.size());
-  for (const Motion& m : motion_) saved.push_back(m.before);
+  saved.reserve(1 + passes_.size() + 2 * probes_.size());
+  for (const Pass& p : passes_) saved.push_back(p.before);
   for (const Probe& p : probes_) saved.push_back(p.triangle), saved.push_back(p.impulse);
   return saved;
 }
 
 void Contact::load(const double* saved, const std::vector<Vec3>& x) {
   steps_since_renewal_ = int(*saved++);
-  for (Motion& m : motion_) m.before = *saved++;
+  for (Pass& p : passes_) p.before = *saved++;
   for (Probe& p : probes_) p.triangle = std::int32_t(*saved++), p.impulse = *saved++;
   constraints_.clear(), part_begin_.fill(0);
   begin_stretch(x);
@@ -277,7 +308,7 @@ void Contact::constrain_chunk(std::size_t begin, std::size_t end, const std::vec
       }
       probe.constraint = -1;
     }
-    const double so_far = travel(passes_[probe.pass]);
+    const double so_far = passes_[std::size_t(probe.pass)].travel;
     if (probe.sleeps_until - so_far > held_below_) continue;
     if (constrain(probe, x, c, clearance)) c.probe = near_[i], out.push_back(c);
     probe.sleeps_until = clearance > held_below_ ? so_far + clearance : awake;
@@ -327,8 +358,9 @@ void Contact::look(const std::vector<Vec3>& x) {
   held_below_ = needed_ + std::min(look_every * closing_, look_within);
   measure_motion(x);
   since_look_ = 0;
-  if (steps_since_renewal_ >= renew_every || worn_out()) {
-    renew(x);
+  const bool aged = steps_since_renewal_ >= renew_every;
+  if (aged || std::any_of(passes_.begin(), passes_.end(), [&](const Pass& p) { return worn_out(p); })) {
+    renew(x, aged);
   } else if (steps_since_normals_ >= normals_every) {
     update_normals(x);
   }
@@ -339,8 +371,8 @@ void Contact::look(const std::vector<Vec3>& x) {
 bool Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
   dt_ = dt, closing_ = 2 * dt * max_speed;
   needed_ = options_.activation + closing_;
-  const auto spent = [&] { return held_below_ - 2 * since_look_ < needed_; };
-  if (!look_due_ && spent()) since_look_ = farthest_since_look(x);
+  const auto spent = [&] { return held_below_ - since_look_ < needed_; };
+  if (!look_due_ && spent()) since_look_ = relative_motion_since_look(x);
   const bool looks = look_due_ || steps_since_renewal_ >= renew_every || spent();
   if (looks) {
     look(x);
