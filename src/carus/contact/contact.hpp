@@ -122,7 +122,7 @@ class Contact {
   /// Ends a stretch at positions `x`. What follows depends on positions, velocities and what `save` returns alone, so a
   /// checkpoint taken here continues bit for bit.
   void pause(const std::vector<Vec3>& x);
-  /// Partners and warm-start impulses per probe, and how far the last renewals are behind; always of the same length.
+  /// Partners and warm-start impulses per probe, and how far the last renewal is behind; always of the same length.
   [[nodiscard]] std::vector<double> save() const;
   /// As after the `pause` that `saved` is of.
   void load(const double* saved, const std::vector<Vec3>& x);
@@ -139,10 +139,9 @@ class Contact {
     float friction;
     std::int32_t first, last;  ///< probes
     // How far a node and a facet of the two may have moved against each other, at most [m]:
-    double net = 0;     ///< since motion is counted
-    double before = 0;  ///< from the renewal to there, a sum
-    double travel = 0;  ///< a sum over the looks since the probes were woken
-    int age = never;    ///< steps since the renewal
+    double net = 0;     ///< since the stretch began
+    double before = 0;  ///< from the renewal to there, a sum over stretches
+    double travel = 0;  ///< a sum over the looks since the stretch began
   };
   /// One node looking at one surface.
   struct Probe {
@@ -153,18 +152,18 @@ class Contact {
     double impulse = 0;
     double sleeps_until = 0;  ///< travel of both its surfaces before which it cannot touch; less all the time: awake
   };
-  /// The displacements of some nodes over some time: their box, and the longest [m].
+  /// The displacements of some nodes over some time: their box, and the square of the longest [m^2].
   struct Spread {
     Vec3 least = Vec3::Zero(), most = Vec3::Zero();
     double longest2 = 0;
-    explicit Spread(const Vec3& u) : least(u), most(u), longest2(u.squaredNorm()) {}
     Spread() = default;
+    explicit Spread(const Vec3& u) : least(u), most(u), longest2(u.squaredNorm()) {}
     void add(const Vec3& u) {
       least = least.cwiseMin(u), most = most.cwiseMax(u);
       longest2 = std::max(longest2, u.squaredNorm());
     }
   };
-  /// What one surface did: positions since when motion is counted and at the last look, displacements from there.
+  /// What one surface did: positions when the stretch began and at the last look, displacements from there.
   struct Motion {
     std::vector<Vec3> at_start, at_look;
     Spread from_start, from_look;
@@ -176,15 +175,12 @@ class Contact {
     double squared;  ///< distance [m^2]
   };
 
-  void wake(const Pass& p);
   void renew(const std::vector<Vec3>& x);
   void begin_stretch(const std::vector<Vec3>& x);
-  void count_motion_from(const std::vector<Vec3>& x);
   void measure_motion(const std::vector<Vec3>& x);
   [[nodiscard]] static double relative_motion(const Spread& a, const Spread& b);
   [[nodiscard]] double relative_motion_since_look(const std::vector<Vec3>& x);
-  [[nodiscard]] bool worn_out(const Pass& p) const;
-  [[nodiscard]] bool any_worn_out() const;
+  [[nodiscard]] bool worn_out() const;
   void look(const std::vector<Vec3>& x);
   void constrain_all(const std::vector<Vec3>& x);
   void constrain_chunk(std::size_t begin, std::size_t end, const std::vector<Vec3>& x, std::vector<Constraint>& out);
@@ -243,6 +239,7 @@ class Contact {
   double needed_ = 0;      ///< [m] gap below which a pair must be in the solve of this step
   double held_below_ = 0;  ///< [m] gap below which the last look left constraints
   int steps_since_normals_ = never;
+  int steps_since_renewal_ = never;
   std::int64_t renewals_ = 0;
   double seconds_renewing_ = 0;
 };

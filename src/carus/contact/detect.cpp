@@ -128,59 +128,38 @@ void Contact::renew_probe(Probe& probe, const std::vector<Vec3>& x) const {
   probe.triangle = found;
 }
 
-/// Looks for partners anew, in the passes that are worn out.
 void Contact::renew(const std::vector<Vec3>& x) {
   const auto start = std::chrono::steady_clock::now();
   const bool first = renewals_ == 0;
   update_normals(x);
-  std::vector<std::uint8_t> wanted(surfaces_.size(), 0);
-  for (Pass& p : passes_) {
-    if (!worn_out(p)) {
-      p.before += p.net;
-      continue;
-    }
-    p.before = 0, p.travel = 0, p.age = 0;
-    wanted[std::size_t(p.facets)] = 1;
-  }
   parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
-    if (wanted[s] && (first || moves_[s])) grids_[s].build(x, surfaces_[s].triangles, options_.reach);
+    if (!first && !moves_[s]) return;
+    grids_[s].build(x, surfaces_[s].triangles, options_.reach);
   });
   parallel::for_chunks(probes_.size(), probe_chunk, [&](std::size_t b, std::size_t e, std::size_t) {
-    for (std::size_t i = b; i < e; ++i)
-      if (passes_[std::size_t(probes_[i].pass)].age == 0) renew_probe(probes_[i], x);
+    for (std::size_t i = b; i < e; ++i) renew_probe(probes_[i], x);
   });
-  for (const Pass& p : passes_)
-    if (p.age == 0) wake(p);
-  count_motion_from(x);
+  for (Pass& p : passes_) p.before = 0;
+  begin_stretch(x);
+  steps_since_renewal_ = 0;
   ++renewals_;
   seconds_renewing_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// All its probes are looked at anew.
-void Contact::wake(const Pass& p) {
-  for (auto i = p.first; i < p.last; ++i) {
-    probes_[std::size_t(i)].sleeps_until = awake, probes_[std::size_t(i)].constraint = -1;
-  }
-}
-
-void Contact::count_motion_from(const std::vector<Vec3>& x) {
+/// Everything is looked at anew from here on, and motion counted from here.
+void Contact::begin_stretch(const std::vector<Vec3>& x) {
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
     Motion& m = motion_[s];
     m.at_start.clear();
     for (const auto n : surfaces_[s].nodes) m.at_start.push_back(x[n]);
     m.at_look = m.at_start;
   }
-  for (Pass& p : passes_) p.net = 0;
+  for (Pass& p : passes_) p.net = p.travel = 0;
   near_.clear();
   for (std::size_t i = 0; i < probes_.size(); ++i) {
+    probes_[i].sleeps_until = awake, probes_[i].constraint = -1;
     if (probes_[i].triangle >= 0) near_.push_back(std::int32_t(i));
   }
-}
-
-/// Everything is looked at anew from here on, and motion counted from here.
-void Contact::begin_stretch(const std::vector<Vec3>& x) {
-  for (Pass& p : passes_) p.travel = 0, wake(p);
-  count_motion_from(x);
 }
 
 /// Cuts that share the constraints out evenly, across the direction in which they reach farthest.
@@ -239,7 +218,7 @@ void Contact::measure_motion(const std::vector<Vec3>& x) {
   }
 }
 
-/// A node that trembles is not far, however fast.
+/// From where they are: a node that trembles is not far, however fast.
 double Contact::relative_motion_since_look(const std::vector<Vec3>& x) {
   parallel::for_chunks(surfaces_.size(), 1, [&](std::size_t s, std::size_t, std::size_t) {
     Motion& m = motion_[s];
@@ -262,14 +241,10 @@ void Contact::update_normals(const std::vector<Vec3>& x) {
   }
 }
 
-/// Its surfaces have moved so far since the renewal that what was out of reach may touch before the next look, or it was
-/// long ago.
-bool Contact::worn_out(const Pass& p) const {
-  return p.age >= renew_every || p.before + p.net > options_.reach - options_.sagitta_limit - held_below_;
-}
-
-bool Contact::any_worn_out() const {
-  return std::any_of(passes_.begin(), passes_.end(), [&](const Pass& p) { return worn_out(p); });
+/// Some pair of surfaces has moved so far since the renewal that what was out of reach may touch before the next look.
+bool Contact::worn_out() const {
+  const double reserve = options_.reach - options_.sagitta_limit - held_below_;
+  return std::any_of(passes_.begin(), passes_.end(), [&](const Pass& p) { return p.before + p.net > reserve; });
 }
 
 void Contact::pause(const std::vector<Vec3>& x) {
@@ -281,15 +256,16 @@ void Contact::pause(const std::vector<Vec3>& x) {
 }
 
 std::vector<double> Contact::save() const {
-  std::vector<double> saved;
-  saved.reserve(2 * (passes_.size() + probes_.size()));
-  for (const Pass& p : passes_) saved.push_back(p.age), saved.push_back(p.before);
+  std::vector<double> saved{double(steps_since_renewal_)};
+  saved.reserve(1 + passes_.size() + 2 * probes_.size());
+  for (const Pass& p : passes_) saved.push_back(p.before);
   for (const Probe& p : probes_) saved.push_back(p.triangle), saved.push_back(p.impulse);
   return saved;
 }
 
 void Contact::load(const double* saved, const std::vector<Vec3>& x) {
-  for (Pass& p : passes_) p.age = int(*saved++), p.before = *saved++;
+  steps_since_renewal_ = int(*saved++);
+  for (Pass& p : passes_) p.before = *saved++;
   for (Probe& p : probes_) p.triangle = std::int32_t(*saved++), p.impulse = *saved++;
   constraints_.clear(), part_begin_.fill(0);
   begin_stretch(x);
@@ -362,7 +338,7 @@ void Contact::look(const std::vector<Vec3>& x) {
   held_below_ = needed_ + std::min(look_every * closing_, look_within);
   measure_motion(x);
   since_look_ = 0;
-  if (any_worn_out()) {
+  if (steps_since_renewal_ >= renew_every || worn_out()) {
     renew(x);
   } else if (steps_since_normals_ >= normals_every) {
     update_normals(x);
@@ -376,15 +352,13 @@ bool Contact::detect(const std::vector<Vec3>& x, double dt, double max_speed) {
   needed_ = options_.activation + closing_;
   const auto spent = [&] { return held_below_ - since_look_ < needed_; };
   if (!look_due_ && spent()) since_look_ = relative_motion_since_look(x);
-  const bool aged = std::any_of(passes_.begin(), passes_.end(), [](const Pass& p) { return p.age >= renew_every; });
-  const bool looks = look_due_ || aged || spent();
+  const bool looks = look_due_ || steps_since_renewal_ >= renew_every || spent();
   if (looks) {
     look(x);
   } else {
     refresh(x);
   }
-  for (Pass& p : passes_) ++p.age;
-  ++steps_since_normals_;
+  ++steps_since_renewal_, ++steps_since_normals_;
   return looks;
 }
 
