@@ -14,6 +14,7 @@
 #include "carus/results/engine.hpp"
 #include "carus/scenario/assemble.hpp"
 #include "scenes.hpp"
+#include "version.hpp"
 
 namespace carus::app {
 namespace {
@@ -147,7 +148,7 @@ void bench_all(const BenchArguments& a) {
   double load = 0;
   const bool known = getloadavg(&load, 1) == 1;
   fmt::print("carus {} ({}) on {}, {} cores, {}; least of {} repetitions, and how much slower the slowest was\n\n",
-             CARUS_VERSION, CARUS_COMMIT, processor(), cores,
+             program_version, program_commit, processor(), cores,
              known ? fmt::format("load {:.1f} before", load) : "load unknown", a.repeats);
   fmt::print("{:<34}{:>8}{:>9}  {:<20}{:>14}{:>7}{:>10}\n", "scene", "tets", "threads", "stage", "time", "share",
              "spread");

@@ -15,6 +15,7 @@
 #include "carus/core/error.hpp"
 #include "carus/core/parallel.hpp"
 #include "carus/scenario/assemble.hpp"
+#include "version.hpp"
 
 namespace carus::app {
 namespace {
@@ -52,7 +53,7 @@ results::Outcome birth(const scenario::Scenario& s, const BirthOptions& options)
   results::prepare_folder(options.out, options.resume);
   open_log(options.out, options.resume, options.log_to_terminal);
   for (const auto& w : s.warnings) spdlog::warn("{}", w);
-  spdlog::info("carus {} ({}): meshing", CARUS_VERSION, CARUS_COMMIT);
+  spdlog::info("carus {} ({}): meshing", program_version, program_commit);
   const auto begin = std::chrono::steady_clock::now();
   const parallel::Threads threads(s.numerics.threads);
   const auto anatomy = logged([&] { return build_anatomy(s); });
@@ -62,7 +63,7 @@ results::Outcome birth(const scenario::Scenario& s, const BirthOptions& options)
   tell_plan(s, assembly.model, engine->facts());
 
   results::RunOptions o;
-  o.out = options.out, o.resume = options.resume, o.version = CARUS_VERSION, o.commit = CARUS_COMMIT;
+  o.out = options.out, o.resume = options.resume, o.version = program_version, o.commit = program_commit;
   o.wall_meshing = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   o.threads = s.numerics.threads > 0 ? s.numerics.threads : int(std::thread::hardware_concurrency());
   o.stop = &stop_requested;

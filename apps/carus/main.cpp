@@ -6,6 +6,7 @@
 #include "app.hpp"
 #include "carus/core/error.hpp"
 #include "carus/results/import.hpp"
+#include "version.hpp"
 #ifdef CARUS_WITH_MESHING
 #include "carus/meshing/build.hpp"
 #endif
@@ -28,7 +29,8 @@ anatomy::Anatomy build_anatomy(const scenario::Scenario& s) {
 int main(int argc, char** argv) {
   using namespace carus;
   CLI::App app("carus: computes a childbirth by finite elements. Not for clinical use.", "carus");
-  app.set_version_flag("--version", fmt::format("carus {} ({})", CARUS_VERSION, CARUS_COMMIT));
+  app.set_version_flag("--version",
+                       fmt::format("carus {} ({})", carus::app::program_version, carus::app::program_commit));
   app.require_subcommand(1);
   app.footer("Exit status: 0 done, 1 a check is not met, 2 bad input, 3 numerical failure, 4 interrupted (resumable).");
   int status = app::done;

@@ -10,6 +10,7 @@
 #include "birth.hpp"
 #include "carus/core/parallel.hpp"
 #include "carus/general/run.hpp"
+#include "version.hpp"
 
 namespace carus::app {
 
@@ -17,7 +18,7 @@ int run_model(const scenario::ModelScenario& s, const std::filesystem::path& out
   results::prepare_folder(out, resume);
   open_log(out, resume, true);
   for (const auto& w : s.warnings) spdlog::warn("{}", w);
-  spdlog::info("carus {} ({}): {}", CARUS_VERSION, CARUS_COMMIT, s.name);
+  spdlog::info("carus {} ({}): {}", program_version, program_commit, s.name);
   const auto begin = std::chrono::steady_clock::now();
   const parallel::Threads threads(s.threads);
   const auto model = logged([&] { return general::build(s, general::gather_meshes(s)); });
@@ -27,7 +28,7 @@ int run_model(const scenario::ModelScenario& s, const std::filesystem::path& out
   spdlog::info("{} elements, {} nodes, {} steps of {:.3g} s (mass added {:.2f} %)", model.model.mesh.tets.size(),
                model.model.mesh.nodes.size(), facts.steps, facts.step.time_step, 100 * facts.step.mass_scaled_fraction);
   general::RunOptions o;
-  o.out = out, o.resume = resume, o.version = CARUS_VERSION, o.commit = CARUS_COMMIT;
+  o.out = out, o.resume = resume, o.version = program_version, o.commit = program_commit;
   o.wall_meshing = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   o.threads = s.threads > 0 ? s.threads : int(std::thread::hardware_concurrency());
   o.stop = stop_flag();

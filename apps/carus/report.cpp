@@ -10,6 +10,7 @@
 #include "carus/report/manifest.hpp"
 #include "carus/report/page.hpp"
 #include "carus/results/files.hpp"
+#include "version.hpp"
 #include "viewer.hpp"
 
 namespace carus::app {
@@ -66,7 +67,7 @@ void write_report(ReportArguments a) {
   const auto begin = std::chrono::steady_clock::now();
   const std::string viewer = viewer_page(a.viewer);
   report::ManifestOptions options;
-  options.version = CARUS_VERSION, options.commit = CARUS_COMMIT, options.created = report::utc_now();
+  options.version = program_version, options.commit = program_commit, options.created = report::utc_now();
   const auto own = a.folders.size();
   if (!a.ghost.empty()) {
     options.ghost = index_of(a.folders, a.ghost);

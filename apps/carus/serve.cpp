@@ -7,6 +7,7 @@
 #include "app.hpp"
 #include "carus/core/error.hpp"
 #include "carus/report/server.hpp"
+#include "version.hpp"
 #include "viewer.hpp"
 
 namespace carus::app {
@@ -20,7 +21,7 @@ struct ServeArguments {
 
 int serve(const ServeArguments& a) {
   report::ManifestOptions options;
-  options.version = CARUS_VERSION, options.commit = CARUS_COMMIT;
+  options.version = program_version, options.commit = program_commit;
   report::Site site(viewer_page(a.viewer), {a.folders.begin(), a.folders.end()}, options);
   report::Server server(site, a.address, a.port);
   const bool v6 = a.address.find(':') != std::string::npos;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "birth.hpp"
+#include "version.hpp"
 
 namespace carus::app {
 namespace {
@@ -34,7 +35,7 @@ int study_of(StudyArguments a) {
 
   ProgressLine line;
   study::Options o;
-  o.out = a.out, o.scenario = a.scenario, o.variants = file, o.version = CARUS_VERSION, o.commit = CARUS_COMMIT;
+  o.out = a.out, o.scenario = a.scenario, o.variants = file, o.version = program_version, o.commit = program_commit;
   o.run = [&](const scenario::Scenario& s, const std::filesystem::path& folder, bool resume) {
     BirthOptions b;
     b.out = folder, b.resume = resume, b.log_to_terminal = false;

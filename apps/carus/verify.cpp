@@ -10,6 +10,7 @@
 #include "carus/results/files.hpp"
 #include "carus/results/summary.hpp"
 #include "carus/verify/problem.hpp"
+#include "version.hpp"
 
 namespace carus::app {
 namespace {
@@ -49,8 +50,9 @@ int verify_all(const VerifyArguments& a) {
   }
   if (!a.table.empty()) results::write_atomically(a.table, verify::as_csv(outcomes));
   if (!a.page.empty())
-    results::write_atomically(a.page, verify::as_markdown(outcomes, results::machine_description(),
-                                                          fmt::format("carus {} ({})", CARUS_VERSION, CARUS_COMMIT)));
+    results::write_atomically(a.page,
+                              verify::as_markdown(outcomes, results::machine_description(),
+                                                  fmt::format("carus {} ({})", program_version, program_commit)));
   fmt::print("{}\n", verify::verdict(outcomes));
   return std::all_of(outcomes.begin(), outcomes.end(), [](const auto& o) { return o.met(); }) ? done : not_met;
 }

@@ -45,8 +45,8 @@ Forces element_forces(const fem::Model& model, std::vector<fem::Block>& blocks, 
     for (std::size_t r = 0; r < b.runs.size(); ++r) {
       const auto& run = b.runs[r];
       const auto material = solve::kernel_material(model.regions[run.region]);
-      const auto report = kernel.forces(b.batches.data() + run.begin, run.end - run.begin, material, b.x.data(), b.f.data(),
-                                 nullptr, b.history.data() + b.history_begin[r]);
+      const auto report = kernel.forces(b.batches.data() + run.begin, run.end - run.begin, material, b.x.data(),
+                                        b.f.data(), nullptr, b.history.data() + b.history_begin[r]);
       out.report.min_J = std::min(out.report.min_J, report.min_J);
       out.report.inverted += report.inverted;
       if (report.worst_element >= 0) out.report.worst_element = report.worst_element;

@@ -19,7 +19,8 @@ constexpr double rounding = 1e-6;    // [m]: penetrations that are none
 }  // namespace
 
 /// An impulse along the normal acts on the node, its opposite on the facet.
-[[gnu::always_inline]] inline void Contact::push(const Constraint& c, double impulse, std::vector<Vec3>& v, std::vector<double>& rate) const {
+[[gnu::always_inline]] inline void Contact::push(const Constraint& c, double impulse, std::vector<Vec3>& v,
+                                                 std::vector<double>& rate) const {
   v[c.node] += impulse * c.response[0];
   for (int k = 0; k < 3; ++k) v[c.facet[k]] += impulse * c.response[k + 1];
   if (c.hinge_node >= 0) rate[c.hinge_node] += hinges_[c.hinge_node].inverse_inertia * c.lever_node * impulse;
@@ -27,7 +28,8 @@ constexpr double rounding = 1e-6;    // [m]: penetrations that are none
 }
 
 /// A tangential impulse; hinges feel the normal ones alone.
-[[gnu::always_inline]] inline void Contact::shear(const Constraint& c, const Vec3& impulse, std::vector<Vec3>& v) const {
+[[gnu::always_inline]] inline void Contact::shear(const Constraint& c, const Vec3& impulse,
+                                                  std::vector<Vec3>& v) const {
   v[c.node] += response(c.node, impulse);
   for (int k = 0; k < 3; ++k) v[c.facet[k]] -= c.w[k] * response(c.facet[k], impulse);
 }
@@ -43,7 +45,8 @@ constexpr double rounding = 1e-6;    // [m]: penetrations that are none
 }
 
 /// Returns the normal speed it found.
-[[gnu::always_inline]] inline double Contact::relax(Constraint& c, std::vector<Vec3>& v, std::vector<double>& rate) const {
+[[gnu::always_inline]] inline double Contact::relax(Constraint& c, std::vector<Vec3>& v,
+                                                    std::vector<double>& rate) const {
   double speed = c.n.dot(relative(c, v));
   if (c.hinge_node >= 0) speed += rate[c.hinge_node] * c.lever_node;
   if (c.hinge_facet >= 0) speed -= rate[c.hinge_facet] * c.lever_facet;
@@ -89,7 +92,8 @@ void Contact::solve(std::vector<Vec3>& v, std::vector<double>& hinge_rate) {
 }
 
 /// One pair of `part_penetrated`.
-[[gnu::always_inline]] inline void Contact::raise(Constraint& c, const std::vector<Vec3>& v, std::vector<Vec3>& lift) const {
+[[gnu::always_inline]] inline void Contact::raise(Constraint& c, const std::vector<Vec3>& v,
+                                                  std::vector<Vec3>& lift) const {
   double wanted_speed = 0;
   if (c.gap < -rounding) {
     const double opening = std::max(0.0, c.n.dot(relative(c, v)));

@@ -22,8 +22,8 @@ class Elastic {
 
   /// Begins a step of dt [s of labour] from the history so far.
   void begin_step(double dt);
-  /// Ends it at x: the history moves on. Returns what the instantaneous law counts as stored in this step and relaxation
-  /// did not let be put in: (S - S_relaxed):dE, the stresses' mean over the step [J].
+  /// Ends it at x: the history moves on. Returns what the instantaneous law counts as stored in this step and
+  /// relaxation did not let be put in: (S - S_relaxed):dE, the stresses' mean over the step [J].
   double end_step(const std::vector<Vec3>& x);
   /// The stress-free shape of the retracting elements: F_e = F F_a^-1.
   void set_rest_length(const RestLength& rest_length);

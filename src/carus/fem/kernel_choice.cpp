@@ -28,7 +28,8 @@ const Kernel& kernel() {
     const bool has_avx512 =
         __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
     const bool has_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    if (has_avx512 && (want.empty() || want == "avx512")) return Kernel{avx512::forces, avx512::relax, avx512::volumes, "avx512"};
+    if (has_avx512 && (want.empty() || want == "avx512"))
+      return Kernel{avx512::forces, avx512::relax, avx512::volumes, "avx512"};
     if (has_avx2 && (want.empty() || want == "avx2" || want == "avx512"))
       return Kernel{avx2::forces, avx2::relax, avx2::volumes, "avx2"};
 #endif

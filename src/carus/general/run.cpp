@@ -87,9 +87,8 @@ std::vector<std::string> column_names(const GeneralModel& m) {
       for (const char axis : {'x', 'y', 'z'}) names.push_back(set.name + "_" + fmt::format(fmt::runtime(what), axis));
     }
   }
-  for (const char* name :
-       {"kinetic_j", "internal_j", "external_work_j", "contact_work_j", "damping_work_j", "relaxation_work_j",
-        "least_gap_mm", "min_J"})
+  for (const char* name : {"kinetic_j", "internal_j", "external_work_j", "contact_work_j", "damping_work_j",
+                           "relaxation_work_j", "least_gap_mm", "min_J"})
     names.emplace_back(name);
   return names;
 }
@@ -201,9 +200,8 @@ class Run {
       for (const Vec3& v : {u, r, c}) row.insert(row.end(), v.data(), v.data() + 3);
     }
     const double gap = std::isfinite(seen.least_gap) ? 1e3 * seen.least_gap : s_.contact_search * 1e3;
-    for (const double v :
-         {seen.kinetic, seen.internal, seen.external_work, seen.contact_work, seen.damping_work, seen.relaxation_work, gap,
-          seen.min_J})
+    for (const double v : {seen.kinetic, seen.internal, seen.external_work, seen.contact_work, seen.damping_work,
+                           seen.relaxation_work, gap, seen.min_J})
       row.push_back(v);
     curves_->append(row);
     inverted_ = seen.inverted;

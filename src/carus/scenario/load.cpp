@@ -125,6 +125,7 @@ solve::ExplicitOptions explicit_options(const Scenario& s) {
   o.pseudo_duration = n.pseudo_duration * n.pseudo_time_factor;
   // Kinetic energy goes with the square of the time scaling: at twice the pseudo-time a quarter of it is aimed at.
   o.pace = {n.pace_kinetic_ratio / (n.pseudo_time_factor * n.pseudo_time_factor), n.pace_slowest, n.pace_fastest};
+  // Edges that shrink shorten the critical step; so the added mass is about the same on all meshes.
   o.time_step = n.time_step * s.anatomy.mesh.uterus / anatomy::mesh_size("paper").uterus;
   o.safety = n.safety;
   o.drag = n.drag * n.drag_factor;

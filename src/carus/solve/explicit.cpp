@@ -39,8 +39,8 @@ double Explicit::Impl::stored() const { return stored_energy(model, blocks, stat
 
 void Explicit::Impl::keep() {
   state.rest_length = rest_length.rings();
-  state.internal = {work.external,       work.contact, work.damping, work.active,    work.relaxation, max_speed,
-                    double(pace.rung()), relaxed_at,   retracted_at, internal_energy};
+  state.internal = {work.external, work.contact,        work.damping, work.active,  work.relaxation,
+                    max_speed,     double(pace.rung()), relaxed_at,   retracted_at, internal_energy};
   contact->pause(state.x);
   const auto partners = contact->save();
   state.internal.insert(state.internal.end(), partners.begin(), partners.end());

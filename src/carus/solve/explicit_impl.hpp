@@ -64,8 +64,8 @@ struct Explicit::Impl {
   fem::State state, good;
   Work work, good_work;
   std::vector<Vec3> external_force, contact_impulse;
-  std::vector<std::int32_t> tether_of;  // per node, valid where tethered
-  std::vector<Mat3> tethers;            // per tethered node: sum k d d^T [N/m]
+  std::vector<std::int32_t> tether_of;         // per node, valid where tethered
+  std::vector<Mat3> tethers;                   // per tethered node: sum k d d^T [N/m]
   std::vector<std::uint8_t> traits;            // per node, Trait bits
   std::vector<double> carry, pull;             // per free node: v* = carry v + pull f, drag included
   std::vector<double> drag_mass;               // per node: what drag takes from momentum in a step, over velocity [kg]

@@ -268,7 +268,8 @@ void Explicit::Impl::turn_hinges_freely() {
   if (traits[i] & loaded) s.external += dt * external_force[i].dot(mean);
 }
 
-[[gnu::always_inline]] inline void Explicit::Impl::move_node(std::size_t i, const Vec3& before, const Vec3& free, NodeSums& s) {
+[[gnu::always_inline]] inline void Explicit::Impl::move_node(std::size_t i, const Vec3& before, const Vec3& free,
+                                                             NodeSums& s) {
   const double cap2 = options.max_node_speed * options.max_node_speed;
   Vec3& v = state.v[i];
   double v2 = v.squaredNorm();

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "carus/core/error.hpp"
 
@@ -13,7 +12,6 @@ namespace {
 
 // A rung doubles the kinetic energy; what has just been slow enough is not to be hurried until little moves.
 constexpr double room_to_rise = 16;
-const int under_load = std::getenv("UL") ? std::atoi(std::getenv("UL")) : 0;
 
 }  // namespace
 
@@ -28,10 +26,10 @@ double Pace::factor() const { return std::exp2(0.5 * rung_); }
 
 bool Pace::judge(double kinetic, double internal, bool steady) {
   const double excess = kinetic > 0 ? kinetic / (ratio_ * std::max(internal, 0.0)) : 0;
-  int rung = steady ? rung_ : std::min(rung_, under_load);
+  int rung = steady ? rung_ : std::min(rung_, 0);
   if (excess > 1) {
     rung -= int(std::min(64.0, std::ceil(std::log2(excess))));
-  } else if (excess < 1 / room_to_rise && (steady || rung < under_load)) {
+  } else if (excess < 1 / room_to_rise && (steady || rung < 0)) {
     ++rung;
   }
   rung = std::clamp(rung, lowest_, highest_);
