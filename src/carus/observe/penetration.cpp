@@ -16,7 +16,7 @@ namespace {
 constexpr double touching = 1e-9;       // [m] less is no penetration
 constexpr double crease = 0.643;        // cos 50°
 constexpr double most_sagitta = 0.001;  // [m] more is an edge, not a curved surface
-constexpr double as_near = 2e-5;        // [m] to the nearest facet and to another of its edge
+constexpr double as_near = 2e-5;        // [m] from outside: to the nearest facet and to another of its edge
 
 bool has(const auto& simplex, std::int32_t node) {
   return std::find(simplex.begin(), simplex.end(), node) != simplex.end();
@@ -124,16 +124,21 @@ PenetrationCheck::PenetrationCheck(const fem::Model& model, double search) : sea
   }
 }
 
-double PenetrationCheck::sagitta(const std::vector<Vec3>& x, const Body& body, std::int32_t facet, const Vec3& w) {
+PenetrationCheck::Patch PenetrationCheck::patch(const std::vector<Vec3>& x, const Body& body, std::int32_t facet,
+                                                const Vec3& w) {
   const auto& t = body.boundary[facet];
   const Vec3 foot = w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]];
-  double sum = 0;  // ½ Σ w_k (x_k - p)·n_k, positive where the surface is convex
+  Patch p{0, Vec3::Zero()};
   for (int k = 0; k < 3; ++k) {
     Vec3 normal = Vec3::Zero();
     for (const auto f : body.round[facet][k]) normal += area_of(x, body.boundary[f]);
-    sum += 0.5 * w[k] * (x[t[k]] - foot).dot(normal.normalized());
+    normal.normalize();
+    p.sagitta += 0.5 * w[k] * (x[t[k]] - foot).dot(normal);  // positive where the surface is convex
+    p.normal += w[k] * normal;
   }
-  return std::clamp(sum, -most_sagitta, most_sagitta);
+  p.normal.normalize();
+  p.sagitta = std::clamp(p.sagitta, -most_sagitta, most_sagitta);
+  return p;
 }
 
 /// A body's boxes where it is now, in grids.
@@ -153,36 +158,46 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
   const auto& tets = body.tets;
   constexpr double far = std::numeric_limits<double>::infinity();
 
-  // Distance to the nearest facet within r, or infinity, and the sagitta there. Across an edge that is sharp at rest
-  // two facets are equally near but stand for two surfaces: the nearer one of these counts.
   struct Near {
     double distance;
     std::int32_t facet;
-    Vec3 weights;
+    Vec3 weights, to_foot;
   };
+  // What lies inside is as deep as the nearest patch says that it lies behind; at a sharp edge that need not be the
+  // nearest facet's.
+  const auto depth = [&](const Near& n) {
+    const Patch p = patch(x, body, n.facet, n.weights);
+    if (n.to_foot.dot(p.normal) <= 0) return far;
+    const Vec3 to_patch = n.to_foot + p.sagitta * p.normal;
+    const double across = to_patch.dot(p.normal), beside = (to_patch - across * p.normal).norm();
+    return across > 0 ? std::hypot(across, beside) : std::max(0.0, across + beside);
+  };
+  // Distance to the nearest facet within r, or infinity, and to the surface that the facets stand for.
   const auto nearest = [&](std::int32_t node, double r, bool in) {
+    const double beyond = in ? 2 * most_sagitta : as_near;
     double least = far;
     std::vector<Near> near;
     const Vec3& p = x[node];
     onto.facet_grid.visit(Box(p.array() - r, p.array() + r), [&](std::int32_t f) {
       const auto& t = triangles[f];
-      const double limit = std::min(r, least + as_near), near2 = limit * limit;
+      const double limit = std::min(r, least + beyond), near2 = limit * limit;
       if (onto.facet_boxes[f].squaredExteriorDistance(p) > near2) return;
       const Vec3 area = area_of(x, t);  // the plane is nearer than the facet: most are ruled out by it
       const double along = area.dot(p - x[t[0]]);
       if (along * along > near2 * area.squaredNorm() || has(t, node)) return;
       const Vec3 w = mesh::closest_point_weights(p, x[t[0]], x[t[1]], x[t[2]]);
-      const double d = (p - w[0] * x[t[0]] - w[1] * x[t[1]] - w[2] * x[t[2]]).norm();
+      const Vec3 to_foot = w[0] * x[t[0]] + w[1] * x[t[1]] + w[2] * x[t[2]] - p;
+      const double d = to_foot.norm();
       if (d > limit) return;
-      near.push_back({d, f, w});
+      near.push_back({d, f, w, to_foot});
       least = std::min(least, d);
     });
-    Gap found{least, in ? far : -far};
+    Gap found{least, far};
     for (const Near& n : near) {
-      if (n.distance > least + as_near) continue;
-      const double s = sagitta(x, body, n.facet, n.weights);
-      found.smooth = in ? std::min(found.smooth, s) : std::max(found.smooth, s);
+      if (n.distance > least + beyond) continue;
+      found.smooth = std::min(found.smooth, in ? depth(n) : n.distance - patch(x, body, n.facet, n.weights).sagitta);
     }
+    if (in && found.smooth == far) found.smooth = least;
     return found;
   };
   const auto gap = [&](std::int32_t node) -> Gap {
@@ -194,9 +209,9 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
     if (!in && pass.self) return {search_, search_};
     Gap found = nearest(node, search_, in);
     if (!in && found.flat == far) return {search_, search_};
-    if (!in) return {found.flat, std::min(search_, found.flat - found.smooth)};
+    if (!in) return {found.flat, std::min(search_, found.smooth)};
     for (double r = 4 * search_; found.flat == far; r *= 4) found = nearest(node, r, in);
-    return {-found.flat, -found.flat - found.smooth};
+    return {-found.flat, -found.smooth};
   };
 
   std::vector<Gap> gaps(pass.nodes.size());
@@ -205,9 +220,9 @@ void PenetrationCheck::run(const std::vector<Vec3>& x, const Search& onto, const
   });
   for (std::size_t i = 0; i < gaps.size(); ++i) {
     out.penetrated += gaps[i].flat < -touching;
-    out.least_smooth_gap = std::min(out.least_smooth_gap, gaps[i].smooth);
-    if (gaps[i].flat < out.least_gap) {
-      out.least_gap = gaps[i].flat;
+    out.least_gap = std::min(out.least_gap, gaps[i].flat);
+    if (gaps[i].smooth < out.least_smooth_gap) {
+      out.least_smooth_gap = gaps[i].smooth;
       out.node = pass.nodes[i];
     }
   }

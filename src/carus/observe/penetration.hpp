@@ -14,7 +14,7 @@ struct Penetration {
   std::string a, b;             ///< bodies (Region::organ)
   double least_gap = 0;         ///< [m] over both passes, at most `search`; negative: deepest penetration
   double least_smooth_gap = 0;  ///< [m] the same against the surface that the facets stand for: see `PenetrationCheck`
-  std::int32_t node = -1;       ///< the node that has least_gap
+  std::int32_t node = -1;       ///< the node that has least_smooth_gap
   int penetrated = 0;           ///< nodes that lie inside the other body
 };
 
@@ -23,10 +23,11 @@ struct Penetration {
 /// depth is the exact distance to the nearest facet of that body's boundary, flat as it is in the mesh. A body against
 /// itself counts penetration only: a gap to one's own neighbours means nothing.
 ///
-/// Flat facets of edge h cut a surface of radius R short by up to h²/6R, on either side. The smooth gap takes that off:
-/// the distance to the facet less ½ Σ w_k (x_k - p)·n_k at its nearest point p = Σ w_k x_k, at most 1 mm. n_k is the
-/// normal at a corner, of those facets round it only that edges of less than 50° at rest join to this one: rims stay
-/// rims.
+/// Flat facets of edge h cut a surface of radius R short by up to h²/6R, on either side. The smooth gap is to the
+/// curved patches that they stand for: a facet's lies ½ Σ w_k (x_k - p)·n_k, at most 1 mm, beyond its point p = Σ w_k
+/// x_k, along the mean of the n_k. n_k is the normal at a corner, of those facets round it only that edges of less than
+/// 50° at rest join to this one: rims stay rims. From outside it is the nearest facet's patch; from inside the nearest
+/// patch of those that the node lies behind.
 class PenetrationCheck {
  public:
   /// `search` [m]: gaps beyond it are not looked for.
@@ -50,8 +51,13 @@ class PenetrationCheck {
   struct Gap {
     double flat, smooth;  // [m]
   };
-  [[nodiscard]] static double sagitta(const std::vector<Vec3>& x, const Body& body, std::int32_t facet,
-                                      const Vec3& weights);
+  /// What a facet stands for at one of its points.
+  struct Patch {
+    double sagitta;  // [m] that it lies farther out
+    Vec3 normal;
+  };
+  [[nodiscard]] static Patch patch(const std::vector<Vec3>& x, const Body& body, std::int32_t facet,
+                                   const Vec3& weights);
   struct Search;
   void run(const std::vector<Vec3>& x, const Search& onto, const Pass& pass, Penetration& out) const;
 
