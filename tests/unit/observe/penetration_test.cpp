@@ -68,38 +68,42 @@ TEST(PenetrationCheck, SelfContactIsSeenOnlyWhereTheBodyRunsIntoItself) {
 
 TEST(PenetrationCheck, TheSmoothGapForgivesWhatFacetsCutOff) {
   // A shaft of radius 20 mm that just fits its bore: facets of 16 sides stand off the circle by up to 0.38 mm, turned
-  // by half a side.
-  fem::Model m;
-  test::add_box(m, "shaft", "shaft", {0, -0.02, -0.02}, {0.04, 0.02, 0.02}, 4);
-  test::add_box(m, "ring", "ring", {-0.03, 0, 0}, {0.07, 1, 1}, 16);
-  const double side = 2 * pi / 16;
-  constexpr int shaft_nodes = 5 * 5 * 5;
-  for (std::size_t i = 0; i < m.mesh.nodes.size(); ++i) {
-    Vec3& x = m.mesh.nodes[i];
-    if (i < std::size_t(shaft_nodes)) {  // square to disc: rings of the square become circles
-      const double r = std::max(std::abs(x.y()), std::abs(x.z()));
-      if (r > 0) {
-        const double quarter = pi / 4, turn = std::abs(x.y()) >= std::abs(x.z())
-                                                  ? (x.y() > 0 ? 0 : pi) + quarter * x.z() / x.y()
-                                                  : (x.z() > 0 ? pi / 2 : -pi / 2) - quarter * x.y() / x.z();
+  // by half a side. In the second case the ring begins a little before the shaft, whose end's rim is then nearer to the
+  // ring's flat face than to its bore.
+  for (const double begin : {-0.03, -1e-4}) {
+    fem::Model m;
+    test::add_box(m, "shaft", "shaft", {0, -0.02, -0.02}, {0.04, 0.02, 0.02}, 4);
+    test::add_box(m, "ring", "ring", {begin, 0, 0}, {0.07, 1, 1}, 16);
+    const double side = 2 * pi / 16;
+    constexpr int shaft_nodes = 5 * 5 * 5;
+    for (std::size_t i = 0; i < m.mesh.nodes.size(); ++i) {
+      Vec3& x = m.mesh.nodes[i];
+      if (i < std::size_t(shaft_nodes)) {  // square to disc: rings of the square become circles
+        const double r = std::max(std::abs(x.y()), std::abs(x.z()));
+        if (r > 0) {
+          const double quarter = pi / 4, turn = std::abs(x.y()) >= std::abs(x.z())
+                                                    ? (x.y() > 0 ? 0 : pi) + quarter * x.z() / x.y()
+                                                    : (x.z() > 0 ? pi / 2 : -pi / 2) - quarter * x.y() / x.z();
+          x = {x.x(), r * std::cos(turn), r * std::sin(turn)};
+        }
+      } else {
+        const double r = 0.02 + 0.01 * x.z(), turn = -side * (16 * x.y() + 0.5);  // (x, turn, r) right-handed
         x = {x.x(), r * std::cos(turn), r * std::sin(turn)};
       }
-    } else {
-      const double r = 0.02 + 0.01 * x.z(), turn = -side * (16 * x.y() + 0.5);  // (x, turn, r) right-handed
-      x = {x.x(), r * std::cos(turn), r * std::sin(turn)};
     }
-  }
-  // The ring is closed by using the nodes at its start for those at its end.
-  for (auto& t : m.mesh.tets) {
-    for (auto& n : t) {
-      if (n >= shaft_nodes && (n - shaft_nodes) / 17 % 17 == 16) n -= 16 * 17;
+    // The ring is closed by using the nodes at its start for those at its end.
+    for (auto& t : m.mesh.tets) {
+      for (auto& n : t) {
+        if (n >= shaft_nodes && (n - shaft_nodes) / 17 % 17 == 16) n -= 16 * 17;
+      }
     }
+    m.contact_surfaces[1].triangles = mesh::boundary(m.mesh, [](std::int32_t label) { return label == 1; });
+    m.contact_pairs = {{0, 1}};
+    const auto p = PenetrationCheck(m, 0.004).check(m.mesh.nodes).front();
+    EXPECT_NEAR(p.least_gap, -0.02 * (1 - std::cos(side / 2)), 2e-6);
+    EXPECT_NEAR(p.least_smooth_gap, 0,
+                0.00005);  // an eighth of that: the sagitta is that of a parabola, not of a circle
   }
-  m.contact_surfaces[1].triangles = mesh::boundary(m.mesh, [](std::int32_t label) { return label == 1; });
-  m.contact_pairs = {{0, 1}};
-  const auto p = PenetrationCheck(m, 0.004).check(m.mesh.nodes).front();
-  EXPECT_NEAR(p.least_gap, -0.02 * (1 - std::cos(side / 2)), 2e-6);
-  EXPECT_NEAR(p.least_smooth_gap, 0, 0.00005);  // an eighth of that: the sagitta is that of a parabola, not of a circle
 }
 
 }  // namespace

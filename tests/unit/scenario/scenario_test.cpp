@@ -326,6 +326,15 @@ TEST(Scenario, MeshFactorScalesEveryEdge) {
   EXPECT_DOUBLE_EQ(half.anatomy.mesh.bone, one.anatomy.mesh.bone / 2);
 }
 
+TEST(Scenario, TheStepFollowsTheEdgesOfTheWall) {
+  const auto step = [](const std::vector<std::string>& set) {
+    return explicit_options(parse("", "s.yaml", set)).time_step;
+  };
+  EXPECT_DOUBLE_EQ(step({"numerics.time_step=50 us", "resolution=paper"}), 50e-6);
+  EXPECT_DOUBLE_EQ(step({"numerics.time_step=50 us", "resolution=coarse"}), 50e-6 * 13 / 9);
+  EXPECT_DOUBLE_EQ(step({"numerics.time_step=50 us", "resolution=paper", "numerics.mesh_factor=0.5"}), 25e-6);
+}
+
 TEST(Scenario, ReferencePageIsUpToDate) {
   const fs::path page = source / "docs/reference/scenario.md";
   if (std::getenv("CARUS_WRITE_DOCS") != nullptr) std::ofstream(page) << schema_markdown();
