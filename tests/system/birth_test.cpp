@@ -55,7 +55,6 @@ TEST(Birth, CoarseReferenceMeetsItsBands) {
   EXPECT_LT(s.at("skull_volume_change_max_percent").get<double>(), 1.0);
   const auto& numerics = s.at("numerics");
   EXPECT_EQ(numerics.at("inverted").get<int>(), 0);
-  // What the canal's relaxation dissipates, an eighth of the work, has no book of its own.
   EXPECT_LT(numerics.at("energy_balance_error").get<double>(), 0.08);
   EXPECT_TRUE(fs::exists(out / "frames.pvd"));
 }
