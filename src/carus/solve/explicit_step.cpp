@@ -89,7 +89,7 @@ void Explicit::Impl::element_forces() {
   const Stopwatch watch(seconds[elements]);
   const auto& kernel = fem::kernel();
   const double since = state.time - relaxed_at;
-  const bool relaxes = relax_every > 0 && since >= relax_every;
+  const bool relaxes = relax_every > 0 && since > 0 && since + dt * scale > relax_every;
   if (relaxes) {
     for (std::size_t r = 0; r < materials.size(); ++r) set_relaxation(materials[r], model.regions[r], since);
     relaxed_at = state.time;
