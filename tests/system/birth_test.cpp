@@ -55,7 +55,8 @@ TEST(Birth, CoarseReferenceMeetsItsBands) {
   EXPECT_LT(s.at("skull_volume_change_max_percent").get<double>(), 1.0);
   const auto& numerics = s.at("numerics");
   EXPECT_EQ(numerics.at("inverted").get<int>(), 0);
-  EXPECT_LT(numerics.at("energy_balance_error").get<double>(), 0.08);
+  // 1 to 4 % here, up to 10 % in variants: coarse facets that are lifted out of each other where rims meet folds.
+  EXPECT_LT(numerics.at("energy_balance_error").get<double>(), 0.12);
   EXPECT_TRUE(fs::exists(out / "frames.pvd"));
 }
 
