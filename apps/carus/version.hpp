@@ -3,8 +3,9 @@
 
 namespace carus::app {
 
-extern const char* const program_version;  ///< the project's
-extern const char* const
-    program_commit;  ///< that the build was configured at, "-dirty" with changes; "unknown" without git
+/// The project's.
+extern const char* const program_version;
+/// That the build was configured at, "-dirty" with changes; "unknown" without git.
+extern const char* const program_commit;
 
 }  // namespace carus::app

@@ -28,10 +28,10 @@ struct ExplicitOptions {
 /// What a step knows beyond the state, for measurements and the energy balance.
 struct Observables {
   std::vector<double> pressures;  ///< [Pa], one per Model::pressures
-  double kinetic = 0;
-  double internal = 0;  ///< elastic, by the instantaneous stiffness
+  double kinetic = 0;             ///< [J]
+  double internal = 0;            ///< elastic, by the instantaneous stiffness [J]
   double external_work = 0, contact_work = 0, damping_work = 0, active_work = 0;  ///< [J] since the start
-  double relaxation_work = 0;  ///< since the start: what `internal` counts and relaxation did not let be put in
+  double relaxation_work = 0;  ///< since the start: what `internal` counts and relaxation did not let be put in [J]
   double least_gap = 0;        ///< [m] over all contacts, negative is penetration
   double min_J = 1;
   int inverted = 0;
